@@ -1,7 +1,8 @@
 //! The systems that are timed here and in `benches/peers`.
 
 use fuzzy::model::{
-    Defuzzifier, Implication, Lower, MembershipFunction, Model, ModelBuilder, Output, Variable,
+    Defuzzifier, Implication, LowerFunction, MembershipFunction, Model, ModelBuilder, Output,
+    Variable,
 };
 use fuzzy::rule::{Condition, Rule};
 
@@ -125,7 +126,7 @@ pub fn published_type2() -> Model {
                 },
                 ref other => other.clone(),
             };
-            term.lower = Some(Lower {
+            term.lower = Some(LowerFunction {
                 membership_function: moved(-by),
                 height: 0.9,
             });

@@ -5,7 +5,7 @@ use alloc::{string::String, sync::Arc, vec, vec::Vec};
 use fuzzy::{
     Engine, Model,
     diagnostic::Findings,
-    engine::{EvaluateError, Outcome, Said, Scratch},
+    engine::{AntecedentProposition, EvaluateError, Outcome, Scratch},
 };
 
 use crate::{
@@ -47,7 +47,7 @@ struct Compiled {
     inputs: Vec<Input>,
     propositions: Vec<Proposition>,
     /// The inputs and terms of the propositions, by name.
-    said: Vec<Said>,
+    said: Vec<AntecedentProposition>,
     /// The estimators of the other risks of the profile, each as if it were the only one.
     others: Vec<Estimator>,
 }
@@ -213,7 +213,7 @@ impl Estimator {
             .map_err(|input| EstimatorError::NoSource { input })?;
         let said = engine.propositions();
         let propositions = said.iter().map(|said| Proposition {
-            rule: said.place as u32,
+            rule: said.evaluation_index as u32,
             input: match said.input.checked_sub(fed.len()) {
                 None => fed.get(said.input).copied().unwrap_or_default(),
                 Some(output) => (profile.inputs.len() + output) as u32,
@@ -291,7 +291,7 @@ impl Estimator {
     /// [`Plan::propositions`]. They name a [`Cause`].
     pub fn propositions(&self) -> impl ExactSizeIterator<Item = (&str, &str)> {
         let all = self.0.propositions.iter().zip(&self.0.said);
-        all.map(|(said, Said { term, .. })| {
+        all.map(|(said, AntecedentProposition { term, .. })| {
             let inputs = &self.0.profile.inputs;
             let name = match (said.input as usize).checked_sub(inputs.len()) {
                 None => inputs.get(said.input as usize).map(|input| &*input.name),

@@ -46,7 +46,7 @@ pub struct Diagnostic {
     /// A suggestion how to fix the problem.
     pub help: Option<String>,
     /// Other positions that explain the problem.
-    pub related: Vec<Related>,
+    pub related: Vec<RelatedSpan>,
 }
 
 /// The severity of a finding.
@@ -68,7 +68,7 @@ pub enum Severity {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
-pub struct Related {
+pub struct RelatedSpan {
     /// The byte range in the text.
     pub span: Range<usize>,
     /// The explanation for this position.
@@ -193,7 +193,7 @@ impl Diagnostic {
     #[must_use]
     pub fn related(mut self, span: Range<usize>, message: impl Into<String>) -> Self {
         let message = shortened(message.into(), LONGEST_QUOTE);
-        self.related.push(Related { span, message });
+        self.related.push(RelatedSpan { span, message });
         self
     }
 }

@@ -27,8 +27,8 @@ use crate::formula::Formula;
 #[cfg(feature = "alloc")]
 pub use form::Role;
 #[cfg(feature = "alloc")]
-pub(crate) use form::{Form, Parts};
-pub use formula::Kind;
+pub(crate) use form::{ShapeForm, ShapeParts};
+pub use formula::ShapeKind;
 #[cfg(feature = "alloc")]
 use straight::{along, into_unit};
 #[cfg(feature = "alloc")]
@@ -296,7 +296,7 @@ impl MembershipFunction {
     /// have no fixed number of parameters, and return none.
     pub fn parameters(&self) -> Vec<(&'static str, Role, f64)> {
         match self.parts() {
-            Parts::Fixed(form, values) => {
+            ShapeParts::Fixed(form, values) => {
                 let named = form.parameters.iter().zip(values);
                 named
                     .map(|(&(name, role), value)| (name, role, value))
@@ -322,7 +322,7 @@ impl MembershipFunction {
     /// ```
     pub fn with_parameters(&self, values: &[f64]) -> Result<Self, MembershipError> {
         let (form, count) = match self.parts() {
-            Parts::Fixed(form, _) => (Some(form), form.parameters.len()),
+            ShapeParts::Fixed(form, _) => (Some(form), form.parameters.len()),
             _ => (None, 0),
         };
         let wrong_number = || MembershipError::count(count, values.len());
@@ -386,7 +386,7 @@ impl MembershipFunction {
             MembershipFunction::Piecewise { .. } if x.is_nan() => 0.0,
             MembershipFunction::Piecewise { points } => into_unit(along(points.iter().copied(), x)),
             MembershipFunction::Function { formula } => {
-                Kind::FUNCTION.membership(&[0.0; 4], formula.code(), x)
+                ShapeKind::FUNCTION.membership(&[0.0; 4], formula.code(), x)
             }
             _ => {
                 let (kind, parameters) = self.kind();

@@ -8,16 +8,16 @@
 #[rustfmt::skip]
 pub fn evaluate(inputs: &[f64; 2]) -> [::fuzzy::table::Outcome; 3] {
     #[allow(unused_imports)]
-    use ::fuzzy::table::{Outcome, Partial, Scratch, Strongest, Values};
+    use ::fuzzy::table::{Outcome, PartialConjunction, Scratch, StrongestRule, Values};
     let mut scratch = Scratch {
         values: &mut [0.0; 2],
         degrees: &mut [0.0; 6],
-        alive: &mut [Partial::NONE; 5],
-        partial: &mut [Partial::NONE; 1],
-        next: &mut [Partial::NONE; 1],
+        alive: &mut [PartialConjunction::NONE; 5],
+        partial: &mut [PartialConjunction::NONE; 1],
+        next: &mut [PartialConjunction::NONE; 1],
         stack: &mut [0.0; 10],
         strengths: &mut [0.0; 11],
-        strongest: &mut [Strongest::NONE; 3],
+        strongest: &mut [StrongestRule::NONE; 3],
     };
     let mut outcomes = [Outcome::UNDEFINED; 3];
     RULES.evaluate(&mut scratch, inputs, &mut outcomes);
@@ -55,8 +55,8 @@ pub static RULES: ::fuzzy::table::Table<'static> = {
             Line { foot: 1.0, run: -2.0, base: 0.0, rise: 1.0, literal: 0 },
         ],
         curves: &[
-            Curve { parameters: [-1.0, 1.0, 0.0, 0.0], height: 1.0, kind: Kind(1), literal: 1, first_point: 0, end_point: 0, first_hedge: 0, end_hedge: 1 },
-            Curve { parameters: [1.5, 0.7, 0.0, 0.0], height: 1.0, kind: Kind(6), literal: 2, first_point: 0, end_point: 0, first_hedge: 1, end_hedge: 1 },
+            Curve { parameters: [-1.0, 1.0, 0.0, 0.0], height: 1.0, kind: ShapeKind(1), literal: 1, first_point: 0, end_point: 0, first_hedge: 0, end_hedge: 1 },
+            Curve { parameters: [1.5, 0.7, 0.0, 0.0], height: 1.0, kind: ShapeKind(6), literal: 2, first_point: 0, end_point: 0, first_hedge: 1, end_hedge: 1 },
         ],
         points: &[],
         hedges: &[Not],
@@ -85,8 +85,8 @@ pub static RULES: ::fuzzy::table::Table<'static> = {
             Program { weight: 1.0, first_step: 5, end_step: 6, first_action: 9, end_action: 11, first_hedge: 0, end_hedge: 0 },
         ],
         steps: &[
-            Step { op: Op(0), literal: 0 }, Step { op: Op(1), literal: 3 }, Step { op: Op(0), literal: 1 },
-            Step { op: Op(0), literal: 2 }, Step { op: Op(1), literal: 4 }, Step { op: Op(0), literal: 5 },
+            AntecedentStep { op: Op(0), literal: 0 }, AntecedentStep { op: Op(1), literal: 3 }, AntecedentStep { op: Op(0), literal: 1 },
+            AntecedentStep { op: Op(0), literal: 2 }, AntecedentStep { op: Op(1), literal: 4 }, AntecedentStep { op: Op(0), literal: 5 },
         ],
         blocks: &[],
         outputs: &[
@@ -201,16 +201,16 @@ pub static RULES: ::fuzzy::table::Table<'static> = {
             Strand { left: 0.00036064325295476207, right: 0.0, left_tail: [4.3605757434741833e-7, 2.1684255961855809e-7], right_tail: [0.0, 0.0], strength: 1, flank: 9 },
         ],
         flanks: &[
-            Flank { parameters: [0.0, 15.0, 0.0, 0.0], height: 1.0, from: 0.0, to: 100.0, left: 1.0, right: 2.2336314362031582e-10, area: 0.29374550092563373, moment: -11.171650047066947, beyond: 7.686688022156953e-12, kind: Kind(6), first_knot: 0, end_knot: 0 },
-            Flank { parameters: [45.0, 15.0, 2.0, 0.0], height: 1.0, from: 0.0, to: 45.0, left: 0.012195121951219513, right: 1.0, area: 0.25744684406180396, moment: -3.8538849919084384, beyond: 0.0, kind: Kind(8), first_knot: 0, end_knot: 8 },
-            Flank { parameters: [45.0, 15.0, 2.0, 0.0], height: 1.0, from: 45.0, to: 100.0, left: 1.0, right: 0.005501969841054205, area: 0.2587441119470552, moment: 1.3369387911025856, beyond: 0.0, kind: Kind(8), first_knot: 8, end_knot: 17 },
-            Flank { parameters: [0.0, 0.0, 0.0, 0.0], height: 0.8, from: 40.0, to: 70.0, left: 0.0, right: 0.8, area: 0.1875, moment: 1.875, beyond: 0.0, kind: Kind(5), first_knot: 17, end_knot: 17 },
-            Flank { parameters: [0.0, 0.0, 0.0, 0.0], height: 0.8, from: 70.0, to: 100.0, left: 0.8, right: 0.0, area: 0.1875, moment: 5.625, beyond: 0.0, kind: Kind(5), first_knot: 17, end_knot: 17 },
-            Flank { parameters: [60.0, 100.0, 0.0, 0.0], height: 1.0, from: 60.0, to: 100.0, left: 0.0, right: 1.0, area: 0.3125, moment: 11.979166666666668, beyond: 0.0, kind: Kind(12), first_knot: 17, end_knot: 20 },
-            Flank { parameters: [0.2, 0.2, 0.0, 0.0], height: 1.0, from: 0.0, to: 0.2, left: 0.6065306597126334, right: 1.0, area: 0.17112487837842977, moment: -0.06707623712502359, beyond: 0.07953794908467031, kind: Kind(6), first_knot: 20, end_knot: 20 },
-            Flank { parameters: [0.2, 0.2, 0.0, 0.0], height: 1.0, from: 0.2, to: 1.0, left: 1.0, right: 0.00033546262790251185, area: 0.2506469498570458, moment: -0.035207503462229825, beyond: 1.5877606054314936e-5, kind: Kind(6), first_knot: 20, end_knot: 20 },
-            Flank { parameters: [0.7, 0.6, 0.0, 0.0], height: 1.0, from: 0.39999999999999997, to: 0.7, left: 0.0, right: 1.0, area: 0.14999999999999997, moment: 0.016618906527810725, beyond: 0.0, kind: Kind(15), first_knot: 20, end_knot: 22 },
-            Flank { parameters: [0.7, 0.6, 0.0, 0.0], height: 1.0, from: 0.7, to: 1.0, left: 1.0, right: 0.0, area: 0.15000000000000002, moment: 0.04338109347218926, beyond: 0.0, kind: Kind(15), first_knot: 22, end_knot: 24 },
+            Flank { parameters: [0.0, 15.0, 0.0, 0.0], height: 1.0, from: 0.0, to: 100.0, left: 1.0, right: 2.2336314362031582e-10, area: 0.29374550092563373, moment: -11.171650047066947, beyond: 7.686688022156953e-12, kind: ShapeKind(6), first_knot: 0, end_knot: 0 },
+            Flank { parameters: [45.0, 15.0, 2.0, 0.0], height: 1.0, from: 0.0, to: 45.0, left: 0.012195121951219513, right: 1.0, area: 0.25744684406180396, moment: -3.8538849919084384, beyond: 0.0, kind: ShapeKind(8), first_knot: 0, end_knot: 8 },
+            Flank { parameters: [45.0, 15.0, 2.0, 0.0], height: 1.0, from: 45.0, to: 100.0, left: 1.0, right: 0.005501969841054205, area: 0.2587441119470552, moment: 1.3369387911025856, beyond: 0.0, kind: ShapeKind(8), first_knot: 8, end_knot: 17 },
+            Flank { parameters: [0.0, 0.0, 0.0, 0.0], height: 0.8, from: 40.0, to: 70.0, left: 0.0, right: 0.8, area: 0.1875, moment: 1.875, beyond: 0.0, kind: ShapeKind(5), first_knot: 17, end_knot: 17 },
+            Flank { parameters: [0.0, 0.0, 0.0, 0.0], height: 0.8, from: 70.0, to: 100.0, left: 0.8, right: 0.0, area: 0.1875, moment: 5.625, beyond: 0.0, kind: ShapeKind(5), first_knot: 17, end_knot: 17 },
+            Flank { parameters: [60.0, 100.0, 0.0, 0.0], height: 1.0, from: 60.0, to: 100.0, left: 0.0, right: 1.0, area: 0.3125, moment: 11.979166666666668, beyond: 0.0, kind: ShapeKind(12), first_knot: 17, end_knot: 20 },
+            Flank { parameters: [0.2, 0.2, 0.0, 0.0], height: 1.0, from: 0.0, to: 0.2, left: 0.6065306597126334, right: 1.0, area: 0.17112487837842977, moment: -0.06707623712502359, beyond: 0.07953794908467031, kind: ShapeKind(6), first_knot: 20, end_knot: 20 },
+            Flank { parameters: [0.2, 0.2, 0.0, 0.0], height: 1.0, from: 0.2, to: 1.0, left: 1.0, right: 0.00033546262790251185, area: 0.2506469498570458, moment: -0.035207503462229825, beyond: 1.5877606054314936e-5, kind: ShapeKind(6), first_knot: 20, end_knot: 20 },
+            Flank { parameters: [0.7, 0.6, 0.0, 0.0], height: 1.0, from: 0.39999999999999997, to: 0.7, left: 0.0, right: 1.0, area: 0.14999999999999997, moment: 0.016618906527810725, beyond: 0.0, kind: ShapeKind(15), first_knot: 20, end_knot: 22 },
+            Flank { parameters: [0.7, 0.6, 0.0, 0.0], height: 1.0, from: 0.7, to: 1.0, left: 1.0, right: 0.0, area: 0.15000000000000002, moment: 0.04338109347218926, beyond: 0.0, kind: ShapeKind(15), first_knot: 22, end_knot: 24 },
         ],
         knots: &[
             Knot { x: 0.0, area: 0.0, moment: 0.0 },

@@ -8,16 +8,16 @@
 #[rustfmt::skip]
 pub fn evaluate(inputs: &[f64; 2]) -> [::fuzzy::table::Outcome; 1] {
     #[allow(unused_imports)]
-    use ::fuzzy::table::{Outcome, Partial, Scratch, Strongest, Values};
+    use ::fuzzy::table::{Outcome, PartialConjunction, Scratch, StrongestRule, Values};
     let mut scratch = Scratch {
         values: &mut [0.0; 2],
         degrees: &mut [0.0; 5],
-        alive: &mut [Partial::NONE; 5],
-        partial: &mut [Partial::NONE; 1],
-        next: &mut [Partial::NONE; 1],
+        alive: &mut [PartialConjunction::NONE; 5],
+        partial: &mut [PartialConjunction::NONE; 1],
+        next: &mut [PartialConjunction::NONE; 1],
         stack: &mut [0.0; 1],
         strengths: &mut [0.0; 6],
-        strongest: &mut [Strongest::NONE; 1],
+        strongest: &mut [StrongestRule::NONE; 1],
     };
     let mut outcomes = [Outcome::UNDEFINED; 1];
     RULES.evaluate(&mut scratch, inputs, &mut outcomes);
@@ -53,9 +53,9 @@ pub static RULES: ::fuzzy::table::Table<'static> = {
             Line { foot: 11.0, run: -1.0, base: 0.0, rise: 1.0, literal: 1 },
         ],
         curves: &[
-            Curve { parameters: [0.0, 1.5, 0.0, 0.0], height: 1.0, kind: Kind(6), literal: 0, first_point: 0, end_point: 0, first_hedge: 0, end_hedge: 0 },
-            Curve { parameters: [5.0, 1.5, 0.0, 0.0], height: 1.0, kind: Kind(6), literal: 1, first_point: 0, end_point: 0, first_hedge: 0, end_hedge: 0 },
-            Curve { parameters: [10.0, 1.5, 0.0, 0.0], height: 1.0, kind: Kind(6), literal: 2, first_point: 0, end_point: 0, first_hedge: 0, end_hedge: 0 },
+            Curve { parameters: [0.0, 1.5, 0.0, 0.0], height: 1.0, kind: ShapeKind(6), literal: 0, first_point: 0, end_point: 0, first_hedge: 0, end_hedge: 0 },
+            Curve { parameters: [5.0, 1.5, 0.0, 0.0], height: 1.0, kind: ShapeKind(6), literal: 1, first_point: 0, end_point: 0, first_hedge: 0, end_hedge: 0 },
+            Curve { parameters: [10.0, 1.5, 0.0, 0.0], height: 1.0, kind: ShapeKind(6), literal: 2, first_point: 0, end_point: 0, first_hedge: 0, end_hedge: 0 },
         ],
         points: &[],
         hedges: &[],
@@ -75,8 +75,8 @@ pub static RULES: ::fuzzy::table::Table<'static> = {
             Program { weight: 1.0, first_step: 4, end_step: 5, first_action: 2, end_action: 3, first_hedge: 0, end_hedge: 0 },
         ],
         steps: &[
-            Step { op: Op(0), literal: 0 }, Step { op: Op(2), literal: 3 }, Step { op: Op(0), literal: 2 },
-            Step { op: Op(2), literal: 4 }, Step { op: Op(0), literal: 1 },
+            AntecedentStep { op: Op(0), literal: 0 }, AntecedentStep { op: Op(2), literal: 3 }, AntecedentStep { op: Op(0), literal: 2 },
+            AntecedentStep { op: Op(2), literal: 4 }, AntecedentStep { op: Op(0), literal: 1 },
         ],
         blocks: &[],
         outputs: &[

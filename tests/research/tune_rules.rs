@@ -8,8 +8,8 @@ use std::{collections::BTreeMap, error::Error, fs, io::Write, path::Path};
 
 use flagred::gap::{Filling, GapSettings};
 use flagred_tests::tuning::{
-    AREAS, CANDIDATES, Data, EXCESSES, Row, Set, Share, Votes, candidate, folds, judge, read,
-    risks_pct, shares, tune, tune_without, with_shares, with_step,
+    AREAS, CANDIDATES, Data, FALSE_ALARM_SETS, Row, Set, Share, Votes, candidate, folds, judge,
+    read, risks_pct, shares, tune, tune_without, with_shares, with_step,
 };
 
 /// Minimum number of critical steps, and of other steps, for a separate line of a real vehicle.
@@ -191,7 +191,7 @@ fn print(rows: &[Row], risks_pct: &[f64], out: &mut impl Write) -> Result<()> {
         out,
         "\n| steps | risk above | vehicles left out, % of steps |\n|---|---|---|"
     )?;
-    for excess in &EXCESSES {
+    for excess in &FALSE_ALARM_SETS {
         let of = rows.iter().zip(risks_pct);
         let risks: Vec<f64> = of
             .filter(|(row, _)| (excess.holds)(row))

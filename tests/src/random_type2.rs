@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 use fuzzy::model::{
-    Aggregation, Conjunction, Defuzzifier, Disjunction, Lower, MembershipFunction, Model,
+    Aggregation, Conjunction, Defuzzifier, Disjunction, LowerFunction, MembershipFunction, Model,
     Operators, Output, Term, Variable,
 };
 use fuzzy::rule::{Condition, Hedge, Rule};
@@ -40,7 +40,7 @@ const HEDGES: [Hedge; 5] = [
 /// The kinds of terms of the outputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[expect(missing_docs, reason = "named by its variants")]
-pub enum Kind {
+pub enum OutputTermKind {
     Straight,
     Curved,
     Numbers,
@@ -174,7 +174,7 @@ fn variable(rng: &mut Rng, name: &str, terms: usize, curved: bool) -> Variable {
         } else {
             between(rng, 0.5, 1.0)
         };
-        let lower = Lower {
+        let lower = LowerFunction {
             membership_function: lower,
             height: height * between(rng, 0.3, 1.0),
         };
@@ -213,9 +213,9 @@ fn condition(rng: &mut Rng, inputs: &[Variable]) -> Condition {
 }
 
 /// Returns the random model of a seed with three points; `None` if the model is not valid.
-pub fn model(seed: u64, kind: Kind) -> Option<(Model, Vec<Vec<f64>>)> {
+pub fn model(seed: u64, kind: OutputTermKind) -> Option<(Model, Vec<Vec<f64>>)> {
     let rng = &mut Rng::with_seed(seed);
-    let curved = kind == Kind::Curved;
+    let curved = kind == OutputTermKind::Curved;
     let inputs: Vec<Variable> = (0..rng.usize(1..3))
         .map(|i| {
             let is_curved = rng.bool();
@@ -224,7 +224,7 @@ pub fn model(seed: u64, kind: Kind) -> Option<(Model, Vec<Vec<f64>>)> {
         .collect();
     let terms = rng.usize(1..4);
     let mut output = Output::new(variable(rng, "out", terms, curved));
-    if kind == Kind::Numbers {
+    if kind == OutputTermKind::Numbers {
         output.defuzzifier = match rng.u8(0..3) {
             0 => Defuzzifier::WeightedSum,
             _ => Defuzzifier::WeightedAverage,
@@ -269,7 +269,7 @@ pub fn model(seed: u64, kind: Kind) -> Option<(Model, Vec<Vec<f64>>)> {
         implication: pick(rng, &AND),
         aggregation: pick(rng, &AGGREGATION),
     };
-    if kind == Kind::Straight {
+    if kind == OutputTermKind::Straight {
         model.operators.implication = pick(rng, &AND[..2]);
         model.operators.aggregation = Aggregation::Maximum;
     }

@@ -24,7 +24,7 @@ const STEP_S: f64 = 0.5;
 const HORIZON_S: f64 = 5.0;
 
 /// A flight in changing conditions, with its outcome.
-pub struct Simulated {
+pub struct SimulatedFlight {
     /// The identifier, such as `f000`.
     pub id: String,
     /// The vehicle; two names of one craft are merged.
@@ -98,7 +98,7 @@ pub fn on_all_cores<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync
 }
 
 /// Reads every flight of `sitl2`.
-pub fn flights(data: &Path) -> Vec<Simulated> {
+pub fn flights(data: &Path) -> Vec<SimulatedFlight> {
     let mut events: HashMap<String, Vec<(f64, String, f64)>> = HashMap::new();
     for line in fs::read_to_string(data.join("sitl2/events.csv"))
         .unwrap()
@@ -120,7 +120,7 @@ pub fn flights(data: &Path) -> Vec<Simulated> {
     all
 }
 
-fn read(path: &Path) -> Simulated {
+fn read(path: &Path) -> SimulatedFlight {
     let mut options = flagred_flightlog::Options::default();
     options.signals = Some(ATTITUDE.map(str::to_owned).to_vec());
     let flight = flagred_flightlog::open(path, &options).unwrap();
@@ -139,7 +139,7 @@ fn read(path: &Path) -> Simulated {
         .filter_map(|t_s| Some((t_s, errors.critical_within(t_s, HORIZON_S)?)))
         .collect();
     let last_air = flight.in_air.as_ref().and_then(|air| air.spans.last());
-    Simulated {
+    SimulatedFlight {
         id: path.file_name().unwrap().to_string_lossy()[..4].to_owned(),
         vehicle: vehicle(said("vehicle")),
         kind: said("kind").to_owned(),
@@ -154,7 +154,7 @@ fn read(path: &Path) -> Simulated {
     }
 }
 
-impl Simulated {
+impl SimulatedFlight {
     /// The largest error after a time, within the horizon of the steps, in degrees.
     pub fn error_ahead_deg(&self, t_s: f64) -> f64 {
         self.errors

@@ -18,7 +18,7 @@ use std::{
 use flagred_flightlog::{
     Flight,
     mavlink::{
-        Key, Sender, Skipped, Stream, Version,
+        Key, Sender, SkipCounts, Stream, Version,
         dialect::{MavMessage, MavType},
     },
 };
@@ -259,7 +259,7 @@ impl StandIn {
     }
 
     /// The packets of the other side that it could not decode.
-    pub fn skipped(&self) -> Skipped {
+    pub fn skipped(&self) -> SkipCounts {
         self.stream.skipped()
     }
 

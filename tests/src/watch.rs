@@ -25,9 +25,9 @@ use crate::{
 };
 
 /// A process that is killed at the end of the test, even if the test fails.
-struct Running(Child);
+struct ChildProcess(Child);
 
-impl Drop for Running {
+impl Drop for ChildProcess {
     fn drop(&mut self) {
         // Errors are ignored: the process has ended already, or the test has failed.
         let _ = self.0.kill();
@@ -37,7 +37,7 @@ impl Drop for Running {
 
 /// A running watch, and its address.
 pub struct Watch {
-    child: Running,
+    child: ChildProcess,
     address: Option<SocketAddr>,
     /// The reader of its output, without which the watch would block.
     reader: JoinHandle<Vec<Value>>,
@@ -70,7 +70,7 @@ impl Watch {
             .args(options)
             .stdout(Stdio::piped())
             .spawn();
-        let mut child = Running(child.unwrap());
+        let mut child = ChildProcess(child.unwrap());
         let mut lines = BufReader::new(child.0.stdout.take().unwrap());
         let mut first = String::new();
         lines.read_line(&mut first).unwrap();

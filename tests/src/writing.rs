@@ -17,7 +17,7 @@ use crate::{Folder, flagred};
 pub const RULES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml");
 
 /// A command, and the files that it writes.
-pub struct Writing {
+pub struct WritingCommand {
     pub arguments: Vec<String>,
     pub files: Vec<String>,
 }
@@ -42,7 +42,7 @@ pub fn wild_flight(length_s: u32) -> String {
 }
 
 /// All commands that write files, with inputs in a folder, and outputs in its folder `out`.
-pub fn commands(folder: &Folder) -> Vec<Writing> {
+pub fn commands(folder: &Folder) -> Vec<WritingCommand> {
     let log = folder.file("log.csv", wild_flight(40));
     let rows = "margin,spread,risk\n0.1,0.1,50\n0.3,0.05,10\n0.02,0.2,95\n";
     let rows = folder.file("rows.csv", rows);
@@ -52,7 +52,7 @@ pub fn commands(folder: &Folder) -> Vec<Writing> {
     let page = folder.file("page.html", format!("<meta {policy}>{}", " ".repeat(5000)));
     fs::create_dir_all(folder.path().join("out")).unwrap();
     let out = |name: &str| folder.at(&format!("out/{name}"));
-    let writing = |arguments: &[&str], files: &[&str]| Writing {
+    let writing = |arguments: &[&str], files: &[&str]| WritingCommand {
         arguments: arguments.iter().map(|a| (*a).to_owned()).collect(),
         files: files.iter().map(|file| (*file).to_owned()).collect(),
     };
@@ -90,7 +90,7 @@ pub fn commands(folder: &Folder) -> Vec<Writing> {
     ]
 }
 
-impl Writing {
+impl WritingCommand {
     /// The command, without output.
     pub fn command(&self) -> Command {
         let mut command = flagred();

@@ -1,6 +1,6 @@
 //! Evaluation does not allocate, according to an allocator that counts.
 
-use flagred_tests::random_type2::{Kind, model};
+use flagred_tests::random_type2::{OutputTermKind, model};
 use fuzzy::Engine;
 use fuzzy::engine::Outcome;
 use fuzzy::model::{Aggregation, Conjunction, Defuzzifier, Implication, MembershipFunction, Model};
@@ -46,7 +46,11 @@ fn the_allocation_counter_counts() {
 
 #[test]
 fn no_interval_of_type2_terms_allocates() {
-    for kind in [Kind::Straight, Kind::Curved, Kind::Numbers] {
+    for kind in [
+        OutputTermKind::Straight,
+        OutputTermKind::Curved,
+        OutputTermKind::Numbers,
+    ] {
         let models = (0..100).filter_map(|seed| model(seed, kind));
         assert!(
             models

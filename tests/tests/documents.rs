@@ -68,33 +68,33 @@ fn blocks(text: &str) -> Vec<Block> {
 }
 
 /// A copy of the repository's files, in which documents may write.
-struct Desk(Folder);
+struct RepositoryCopy(Folder);
 
-impl Desk {
+impl RepositoryCopy {
     fn new() -> Self {
-        let desk = Folder::new();
+        let copy = Folder::new();
         for folder in ["bin", "repository"] {
-            fs::create_dir_all(desk.path().join(folder)).unwrap();
+            fs::create_dir_all(copy.path().join(folder)).unwrap();
         }
         for shared in ["examples", "rules", "tests", "docs"] {
             let there = root().join(shared);
             if there.exists() {
                 std::os::unix::fs::symlink(
                     there.canonicalize().unwrap(),
-                    desk.path().join("repository").join(shared),
+                    copy.path().join("repository").join(shared),
                 )
                 .unwrap();
             }
         }
         let binary = flagred().get_program().to_owned();
-        std::os::unix::fs::symlink(&binary, desk.path().join("bin/flagred")).unwrap();
+        std::os::unix::fs::symlink(&binary, copy.path().join("bin/flagred")).unwrap();
         // `cargo run --release -- assess LOG` runs the program with these arguments.
         let cargo =
             "#!/bin/sh\nwhile [ \"$1\" != -- ]; do shift; done; shift; exec flagred \"$@\"\n";
-        fs::write(desk.path().join("bin/cargo"), cargo).unwrap();
+        fs::write(copy.path().join("bin/cargo"), cargo).unwrap();
         let executable = std::os::unix::fs::PermissionsExt::from_mode(0o755);
-        fs::set_permissions(desk.path().join("bin/cargo"), executable).unwrap();
-        Desk(desk)
+        fs::set_permissions(copy.path().join("bin/cargo"), executable).unwrap();
+        RepositoryCopy(copy)
     }
 
     /// The output of a command, including standard error.
@@ -129,7 +129,7 @@ fn matches(said: &[&str], printed: &[&str]) -> bool {
 }
 
 /// Runs the commands of a block; returns the corrected block, and the commands whose output differs.
-fn run_console(desk: &Desk, block: &Block) -> (String, Vec<String>) {
+fn run_console(copy: &RepositoryCopy, block: &Block) -> (String, Vec<String>) {
     let (mut text, mut wrong) = (String::new(), Vec::new());
     let mut lines = block.text.lines().peekable();
     while let Some(line) = lines.next() {
@@ -148,7 +148,7 @@ fn run_console(desk: &Desk, block: &Block) -> (String, Vec<String>) {
             text.extend(said.iter().map(|line| format!("{line}\n")));
             continue;
         }
-        let printed = desk.run(command);
+        let printed = copy.run(command);
         let printed: Vec<&str> = printed.trim_end().lines().map(str::trim_end).collect();
         if matches(&said, &printed) {
             text.extend(said.iter().map(|line| format!("{line}\n")));
@@ -164,14 +164,14 @@ fn run_console(desk: &Desk, block: &Block) -> (String, Vec<String>) {
 }
 
 /// A YAML block is a rule set, a profile, or a part of one.
-fn check_yaml(desk: &Desk, block: &Block) -> Result<(), String> {
+fn check_yaml(copy: &RepositoryCopy, block: &Block) -> Result<(), String> {
     let named = block
         .text
         .lines()
         .next()
         .and_then(|line| line.strip_prefix("# "));
     if let Some(name) = named.filter(|name| name.ends_with(".yaml") && !name.contains(' ')) {
-        fs::write(desk.0.path().join("repository").join(name), &block.text).unwrap();
+        fs::write(copy.0.path().join("repository").join(name), &block.text).unwrap();
     }
     let starts = |word: &str| block.text.lines().any(|line| line.starts_with(word));
     if starts("fuzzy: ") {
@@ -192,16 +192,16 @@ fn every_block_runs_as_printed() {
     for page in documents() {
         let text = fs::read_to_string(&page).unwrap();
         let name = page.file_name().unwrap().to_string_lossy().into_owned();
-        let desk = Desk::new();
+        let copy = RepositoryCopy::new();
         let mut updated = text.clone();
         for block in blocks(&text) {
             let wrong = match block.language.as_str() {
                 "console" => {
-                    let (text, wrong) = run_console(&desk, &block);
+                    let (text, wrong) = run_console(&copy, &block);
                     updated = updated.replacen(&block.text, &text, 1);
                     wrong
                 }
-                "yaml" => check_yaml(&desk, &block).err().into_iter().collect(),
+                "yaml" => check_yaml(&copy, &block).err().into_iter().collect(),
                 "json" => serde_json::from_str::<serde_json::Value>(&block.text)
                     .err()
                     .map(|error| error.to_string())

@@ -16,7 +16,7 @@ struct Flight {
 
 /// The results of the flights with one kind of fault.
 #[derive(Default)]
-struct Told {
+struct FaultResults {
     in_time: usize,
     late: Vec<String>,
     small: usize,
@@ -75,7 +75,7 @@ fn faults_and_upsets_are_reported_within_a_second() {
             .collect::<Vec<(f64, f64)>>()
     });
 
-    let mut table: BTreeMap<&str, Told> = BTreeMap::new();
+    let mut table: BTreeMap<&str, FaultResults> = BTreeMap::new();
     for (flight, alarms) in flights.iter().zip(&alarms) {
         let told = table.entry(&flight.what).or_default();
         let Some(over_s) = flight.over_s else {

@@ -19,7 +19,7 @@ use flagred_tests::{
     vehicle::flight,
     watch::{Watch, assess},
     wire::{Link, Speed},
-    writing::{RULES, Writing, commands, drafts, limited, wild_flight},
+    writing::{RULES, WritingCommand, commands, drafts, limited, wild_flight},
 };
 
 fn run(arguments: &[&str]) -> (Option<i32>, String) {
@@ -361,7 +361,7 @@ enum Fault {
 }
 
 struct Round {
-    writing: Writing,
+    writing: WritingCommand,
     /// The final contents of the files, and the duration.
     new: Vec<Vec<u8>>,
     code: Option<i32>,
@@ -370,7 +370,7 @@ struct Round {
 
 fn rounds(folder: &Folder) -> Vec<Round> {
     let commands = commands(folder).into_iter();
-    let round = |writing: Writing| {
+    let round = |writing: WritingCommand| {
         let start = Instant::now();
         let code = writing.command().status().unwrap().code();
         let (new, time) = (writing.contents(), start.elapsed());

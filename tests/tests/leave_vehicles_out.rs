@@ -10,12 +10,13 @@
 use std::{fs, path::Path, process::Command};
 
 use flagred::{estimator::Estimator, shipped};
-use flagred_evaluation::{Answer, Judged, Span, judge};
+use flagred_evaluation::{EpisodeMatch, Span, WarningMatches, match_warnings};
 use flagred_tests::{
     Folder, flagred, reference_data,
-    simulated::{self, AS_FLOWN, Simulated, on_all_cores},
+    simulated::{self, AS_FLOWN, SimulatedFlight, on_all_cores},
     tuning::{
-        self, AREAS, CANDIDATES, Data, EXCESSES, Set, Votes, candidate, risks_pct, with_step,
+        self, AREAS, CANDIDATES, Data, FALSE_ALARM_SETS, Set, Votes, candidate, risks_pct,
+        with_step,
     },
 };
 
@@ -64,7 +65,7 @@ fn rules_hold_on_vehicles_they_were_not_tuned_on() {
         println!("{}: ROC area {roc:.3}", area.name);
         assert!(roc >= least, "{}: {roc}", area.name);
     }
-    for excess in &EXCESSES {
+    for excess in &FALSE_ALARM_SETS {
         let of = rows
             .iter()
             .zip(&risks)
@@ -86,13 +87,13 @@ fn rules_hold_on_vehicles_they_were_not_tuned_on() {
         .map(|rules| Estimator::new(&profile, rules).unwrap())
         .collect();
     let flights = simulated::flights(&data);
-    let judged = on_all_cores(&flights, |flight| {
+    let matches = on_all_cores(&flights, |flight| {
         let said = flight.replay(&estimators[folds[flight.vehicle.as_str()]], AS_FLOWN);
         let episodes = flight.errors.episodes();
-        judge(&said.warnings, episodes, &[flight.judged], flight.lost_s)
+        match_warnings(&said.warnings, episodes, &[flight.judged], flight.lost_s)
     });
-    let judged: Vec<(&Simulated, &Judged)> = flights.iter().zip(&judged).collect();
-    let warnings = warnings(&judged);
+    let matches: Vec<(&SimulatedFlight, &WarningMatches)> = flights.iter().zip(&matches).collect();
+    let warnings = warnings(&matches);
     assert!(warnings.ramps_announced >= 0.9);
     assert!(warnings.lead_s > 5.0);
     assert!(warnings.answer_s < 1.5 && warnings.answer_from_good_s < 1.5);
@@ -113,8 +114,8 @@ struct Figures {
     of_calm: usize,
 }
 
-fn warnings(judged: &[(&Simulated, &Judged)]) -> Figures {
-    let but_manoeuvres: Vec<_> = judged
+fn warnings(matches: &[(&SimulatedFlight, &WarningMatches)]) -> Figures {
+    let but_manoeuvres: Vec<_> = matches
         .iter()
         .filter(|(f, _)| f.kind != "manoeuvre")
         .collect();
@@ -124,17 +125,17 @@ fn warnings(judged: &[(&Simulated, &Judged)]) -> Figures {
         .sum();
     let of_all = but_manoeuvres
         .iter()
-        .flat_map(|(_, judged)| &judged.warnings);
+        .flat_map(|(_, matches)| &matches.warnings);
     let false_ones = of_all.filter(|warning| warning.is_false).count();
     let calm = but_manoeuvres.iter().filter(|(f, _)| f.kind == "calm");
-    let of_calm = calm.map(|(_, judged)| judged.warnings.len()).sum();
+    let of_calm = calm.map(|(_, matches)| matches.warnings.len()).sum();
 
     // Ramps: a flight in rising wind, or a flight whose last event was a ramp.
     let (mut ramps, mut firsts) = (Vec::new(), Vec::new());
     let (mut answers, mut from_good) = (Vec::new(), Vec::new());
-    for (flight, judged) in &but_manoeuvres {
+    for (flight, matches) in &but_manoeuvres {
         let mut group_until_s = f64::NEG_INFINITY;
-        for (n, answer) in judged.answers.iter().enumerate() {
+        for (n, answer) in matches.episodes.iter().enumerate() {
             let starts_s = answer.episode.from_s;
             let last = last_event(flight, starts_s);
             let is_ramp = flight.kind == "rising"
@@ -155,11 +156,11 @@ fn warnings(judged: &[(&Simulated, &Judged)]) -> Figures {
             };
             if let Some((t_s, ..)) = last.filter(is_sharp)
                 && starts_s - t_s <= 10.0
-                && judged.answers[..n]
+                && matches.episodes[..n]
                     .iter()
                     .all(|before| before.episode.from_s < *t_s)
             {
-                let on = judged.warnings.iter().map(|warning| warning.span);
+                let on = matches.warnings.iter().map(|warning| warning.span);
                 let on: Vec<Span> = on.filter(|warning| warning.to_s >= *t_s).collect();
                 let answer_s = on
                     .first()
@@ -171,11 +172,11 @@ fn warnings(judged: &[(&Simulated, &Judged)]) -> Figures {
             }
         }
     }
-    let announced = |answers: &[&Answer]| {
+    let announced = |answers: &[&EpisodeMatch]| {
         let announced = answers.iter().filter(|answer| answer.is_announced());
         announced.count() as f64 / answers.len() as f64
     };
-    let lead_s = |answers: &[&Answer]| {
+    let lead_s = |answers: &[&EpisodeMatch]| {
         let announced = answers.iter().filter(|answer| answer.is_announced());
         median(announced.filter_map(|answer| answer.lead_s()).collect())
     };
@@ -211,7 +212,7 @@ fn warnings(judged: &[(&Simulated, &Judged)]) -> Figures {
 }
 
 /// The last event of a flight before a time.
-fn last_event(flight: &Simulated, before_s: f64) -> Option<&(f64, String, f64)> {
+fn last_event(flight: &SimulatedFlight, before_s: f64) -> Option<&(f64, String, f64)> {
     const DONE: [&str; 8] = [
         "wind_step",
         "gust_start",

@@ -2,7 +2,7 @@
 
 use flagred_flightlog::{
     Flight, Options,
-    mavlink::{News, Next, Telemetry, next_packet, vehicle_of},
+    mavlink::{PacketScan, Telemetry, TelemetryChange, next_packet, vehicle_of},
 };
 use flagred_tests::log_writer::{HEARTBEAT, Message, PARAM_VALUE, SERVO_OUTPUT_RAW, Tlog};
 
@@ -71,7 +71,7 @@ impl Vehicle {
         let mut telemetry: Option<Telemetry> = None;
         let mut rows = Vec::new();
         for (t_s, bytes) in &self.packets {
-            let Next::Packet(packet) = next_packet(bytes) else {
+            let PacketScan::Packet(packet) = next_packet(bytes) else {
                 panic!("no packet")
             };
             if telemetry.is_none() {
@@ -79,7 +79,7 @@ impl Vehicle {
                 telemetry = Some(Telemetry::new(&packet, vehicle));
             }
             let telemetry = telemetry.as_mut().unwrap();
-            if let News::Commands { t_s } = telemetry.receive(&packet, *t_s) {
+            if let TelemetryChange::Commands { t_s } = telemetry.receive(&packet, *t_s) {
                 let mut commands = [0.0; 4];
                 telemetry.effective_commands(&telemetry.setup(), &mut commands);
                 rows.push(Row {

@@ -14,7 +14,7 @@ use flagred::{
 use flagred_tests::{reference::flight::samples, reference_data, simulated::on_all_cores};
 
 /// The results of a monitor for a flight.
-struct Followed {
+struct MonitorResults {
     id: String,
     findings: Vec<Finding>,
     /// The level after each sample in the air, with its time.
@@ -23,7 +23,7 @@ struct Followed {
     good_and_unknown_s: Vec<f64>,
 }
 
-fn follow(path: &Path) -> Followed {
+fn follow(path: &Path) -> MonitorResults {
     let flight = flagred_flightlog::open(path, &flagred_flightlog::Options::default()).unwrap();
     let factors = flight.geometry.as_ref().map_or(&[][..], |g| &g.factors);
     let craft = Craft::new(flight.motors.len()).with_geometry(factors);
@@ -45,7 +45,7 @@ fn follow(path: &Path) -> Followed {
     }
     let findings = assessor.finish().findings;
     let name = path.file_name().unwrap().to_string_lossy();
-    Followed {
+    MonitorResults {
         id: name.split('.').next().unwrap().to_owned(),
         findings: findings.iter().map(|finding| finding.found).collect(),
         levels,
@@ -60,7 +60,7 @@ fn is_of_balance(finding: &Finding) -> bool {
     )
 }
 
-fn line(flight: &Followed) -> String {
+fn line(flight: &MonitorResults) -> String {
     let mut text = format!("{:24}", flight.id);
     for found in &flight.findings {
         let motor = found.motor.map_or(String::new(), |m| {

@@ -17,9 +17,9 @@ use rayon::prelude::*;
 const MEMORY: u64 = 256 << 20;
 
 /// Prints the seed of the input if it panics.
-struct Telling<'t>(&'t Target, u64);
+struct SeedReport<'t>(&'t Target, u64);
 
-impl Drop for Telling<'_> {
+impl Drop for SeedReport<'_> {
     fn drop(&mut self) {
         if std::thread::panicking() {
             eprintln!("{}, seed {}", self.0.name, self.1);
@@ -29,7 +29,7 @@ impl Drop for Telling<'_> {
 
 /// The time and memory that an input uses.
 fn cost(target: &Target, seeds: &[Vec<u8>], seed: u64) -> (Duration, u64) {
-    let _telling = Telling(target, seed);
+    let _report = SeedReport(target, seed);
     let mut random = Rng::with_seed(seed);
     let bytes = damaged(random.choice(seeds).unwrap(), &mut random);
     let run = || {

@@ -9,7 +9,7 @@ use flagred_tests::reference::{integral, rules};
 use fuzzy::Engine;
 use fuzzy::map::{DecisionMap, Grid};
 use fuzzy::model::{Defuzzifier, Model};
-use fuzzy::table::{ClosedForm, Outcome, Partial, Scratch, Strongest};
+use fuzzy::table::{ClosedForm, Outcome, PartialConjunction, Scratch, StrongestRule};
 use serde_json::json;
 
 /// Counts of the compared values.
@@ -88,7 +88,7 @@ fn by_table(engine: &Engine, point: &[f64]) -> Option<Outcome> {
     }
     let sizes = table.sizes;
     let numbers = |count: u32| vec![0.0; count as usize];
-    let partials = |count: u32| vec![Partial::NONE; count as usize];
+    let partials = |count: u32| vec![PartialConjunction::NONE; count as usize];
     let mut scratch = Scratch {
         values: &mut vec![0.0; point.len()],
         degrees: &mut numbers(sizes.degrees),
@@ -97,7 +97,7 @@ fn by_table(engine: &Engine, point: &[f64]) -> Option<Outcome> {
         next: &mut partials(sizes.partial),
         stack: &mut numbers(sizes.stack),
         strengths: &mut numbers(sizes.strengths),
-        strongest: &mut [Strongest::NONE],
+        strongest: &mut [StrongestRule::NONE],
     };
     let mut outcomes = [Outcome::UNDEFINED];
     table.evaluate(&mut scratch, point, &mut outcomes);

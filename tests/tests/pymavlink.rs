@@ -16,9 +16,9 @@ fn python() -> Command {
 }
 
 /// A process that is killed at the end of the test, even if the test fails.
-struct Running(Child);
+struct ChildProcess(Child);
 
-impl Drop for Running {
+impl Drop for ChildProcess {
     fn drop(&mut self) {
         // Errors are ignored: it may have ended already.
         let _ = self.0.kill();
@@ -36,7 +36,7 @@ fn watch_works_against_a_stand_in_for_the_simulator() {
         .args([&format!("{root}/tests/peer/sitl_stand_in.py"), SPEED])
         .stdout(Stdio::piped())
         .spawn();
-    let mut stand_in = Running(stand_in.unwrap());
+    let mut stand_in = ChildProcess(stand_in.unwrap());
     let mut ports = String::new();
     let told = stand_in.0.stdout.take().unwrap();
     BufReader::new(told).read_line(&mut ports).unwrap();
@@ -50,7 +50,7 @@ fn watch_works_against_a_stand_in_for_the_simulator() {
         .args(["watch", &ports[1], "--jsonl"])
         .stdout(File::create(&said).unwrap())
         .spawn();
-    let watch = Running(watch.unwrap());
+    let watch = ChildProcess(watch.unwrap());
     let output = python()
         .args([
             &format!("{root}/scripts/try-against-sitl"),

@@ -13,9 +13,9 @@ use flagred_flightlog::{Basis, Flight};
 use flagred_tests::{
     STEADY,
     reference::{
-        balance::Unbalanced,
-        flight::{Followed, Sample, follow, samples},
-        levels::Trouble,
+        balance::BalanceFinding,
+        flight::{ReferenceResults, Sample, follow, samples},
+        levels::RaisedEpisode,
     },
     reference_data,
 };
@@ -25,8 +25,8 @@ const ROUNDING: f64 = 1e-9;
 
 #[test]
 fn the_shipped_flight_agrees_with_the_documents() {
-    let troubles = compare_log(&open(STEADY));
-    assert_eq!(troubles, []);
+    let episodes = compare_log(&open(STEADY));
+    assert_eq!(episodes, []);
 }
 
 /// Eight motors at eight angles.
@@ -114,8 +114,8 @@ fn an_eventful_flight_agrees_with_the_documents() {
         let craft = Craft::new(8).with_geometry(&factors);
         let mut assessor = Assessor::new(&estimator, craft, Some(0.0)).unwrap();
         push_all(&mut assessor, &samples);
-        let troubles = compare(&estimator, &assessor.finish(), &samples, &factors);
-        assert_eq!(troubles.len(), findings, "{rate_hz} Hz: {troubles:?}");
+        let episodes = compare(&estimator, &assessor.finish(), &samples, &factors);
+        assert_eq!(episodes.len(), findings, "{rate_hz} Hz: {episodes:?}");
     }
 }
 
@@ -286,8 +286,8 @@ fn flights_agree_with_the_documents() {
         assert_eq!(flight.motors.len(), motors, "{name}");
         let is_inferred = flight.geometry.as_ref().map(|g| g.basis) == Some(Basis::Inferred);
         inferred += u32::from(is_inferred && motors == 8);
-        let troubles = compare_log(&flight);
-        let found = troubles.iter().map(|trouble| trouble.level).max();
+        let episodes = compare_log(&flight);
+        let found = episodes.iter().map(|episode| episode.level).max();
         assert_eq!(found, worst, "{name}");
     }
     assert!(
@@ -301,7 +301,7 @@ fn open(path: impl AsRef<std::path::Path>) -> Flight {
 }
 
 /// Compares the assessment of a log with the reference; returns the findings of the reference.
-fn compare_log(flight: &Flight) -> Vec<Trouble> {
+fn compare_log(flight: &Flight) -> Vec<RaisedEpisode> {
     let estimator = shipped::flagred();
     let assessment = flagred::log::assess(flight, &estimator, Some(0.0));
     let factors = flight
@@ -316,10 +316,10 @@ fn compare(
     assessment: &Assessment,
     samples: &[Sample],
     factors: &[Factors],
-) -> Vec<Trouble> {
-    let Followed {
+) -> Vec<RaisedEpisode> {
+    let ReferenceResults {
         rows,
-        troubles,
+        episodes,
         unbalanced,
     } = follow(samples, factors, estimator.profile(), estimator.model());
     assert_eq!(assessment.steps.len(), rows.len());
@@ -359,21 +359,21 @@ fn compare(
         "only {known} of {} risks are known",
         rows.len()
     );
-    assert_eq!(found(assessment), troubles);
+    assert_eq!(found(assessment), episodes);
     assert_eq!(of_balance(assessment), unbalanced);
-    troubles
+    episodes
 }
 
 /// The findings of the balance, in order of time.
-fn of_balance(assessment: &Assessment) -> Vec<Unbalanced> {
+fn of_balance(assessment: &Assessment) -> Vec<BalanceFinding> {
     let of_balance = assessment.findings.iter().filter(|found| {
         matches!(
             found.measure,
             Measure::Imbalance | Measure::PairImbalance | Measure::WeakMotor
         )
     });
-    let mut all: Vec<Unbalanced> = of_balance
-        .map(|found| Unbalanced {
+    let mut all: Vec<BalanceFinding> = of_balance
+        .map(|found| BalanceFinding {
             measure: found.measure,
             raised_s: found.raised_s,
             motor: found
@@ -387,15 +387,15 @@ fn of_balance(assessment: &Assessment) -> Vec<Unbalanced> {
 }
 
 /// The findings of the risk, in order of time.
-fn found(assessment: &Assessment) -> Vec<Trouble> {
+fn found(assessment: &Assessment) -> Vec<RaisedEpisode> {
     let of_risk = assessment.findings.iter().filter(|found| {
         matches!(
             found.measure,
             Measure::Risk | Measure::ElevatedRisk | Measure::IdleInAir
         )
     });
-    let mut all: Vec<Trouble> = of_risk
-        .map(|found| Trouble {
+    let mut all: Vec<RaisedEpisode> = of_risk
+        .map(|found| RaisedEpisode {
             level: found.severity,
             from_s: found.from_s,
             raised_s: found.raised_s,

@@ -6,7 +6,7 @@ use flagred::{estimator::Estimator, shipped};
 use flagred_evaluation::{Prediction, Ranking};
 use flagred_tests::{
     reference_data,
-    simulated::{self, AS_FLOWN, ProfileRun, Replay, Simulated, on_all_cores},
+    simulated::{self, AS_FLOWN, ProfileRun, Replay, SimulatedFlight, on_all_cores},
 };
 
 fn estimator() -> Estimator {
@@ -105,7 +105,7 @@ fn coarse_logs_wrong_limits_and_faults() {
     ];
     for (name, how, least, most) in table {
         let said = replay(how);
-        let Compared {
+        let RiskComparison {
             auc,
             change,
             near,
@@ -130,7 +130,7 @@ fn coarse_logs_wrong_limits_and_faults() {
         );
     }
     // Two samples in a window do not determine a variation: unknown is better than a wrong number.
-    let Compared { unknown, .. } = compare(
+    let RiskComparison { unknown, .. } = compare(
         &flights,
         &as_flown,
         &replay(Replay {
@@ -149,7 +149,7 @@ fn coarse_logs_wrong_limits_and_faults() {
 }
 
 /// Results compared with those of the unchanged flight.
-struct Compared {
+struct RiskComparison {
     auc: f64,
     /// Mean change of the risk, in percentage points.
     change: f64,
@@ -159,7 +159,11 @@ struct Compared {
     unknown: f64,
 }
 
-fn compare(flights: &[Simulated], as_flown: &[ProfileRun], said: &[ProfileRun]) -> Compared {
+fn compare(
+    flights: &[SimulatedFlight],
+    as_flown: &[ProfileRun],
+    said: &[ProfileRun],
+) -> RiskComparison {
     let mut predictions = Vec::new();
     let (mut change, mut known, mut near, mut unknown) = (0.0, 0.0, 0.0, 0.0);
     for (i, flight) in flights
@@ -188,7 +192,7 @@ fn compare(flights: &[Simulated], as_flown: &[ProfileRun], said: &[ProfileRun]) 
         }
     }
     let areas = Ranking::new(predictions).areas();
-    Compared {
+    RiskComparison {
         auc: areas.map_or(f64::NAN, |a| a.roc),
         change: change / known,
         near: near / known,
@@ -197,7 +201,7 @@ fn compare(flights: &[Simulated], as_flown: &[ProfileRun], said: &[ProfileRun]) 
 }
 
 /// The time from the fault of a flight to the first warning, by kind of fault.
-fn faults(flights: &[Simulated], said: &[ProfileRun]) {
+fn faults(flights: &[SimulatedFlight], said: &[ProfileRun]) {
     println!(
         "faults: seconds from the fault to the warning, `-` where none came before the end of the judged time"
     );

@@ -1,19 +1,21 @@
 //! Interval type-2 rule sets, compared with sums over many samples for all switch points, and with published figures.
 
-use flagred_tests::random_type2::{Kind, model};
+use flagred_tests::random_type2::{OutputTermKind, model};
 use flagred_tests::reference::type2;
 use fuzzy::{Engine, Model};
 
 /// Compares `count` random models, each at three points. Returns the number of intervals.
-fn compare(kind: Kind, count: usize, samples: usize, tolerance: f64) -> usize {
+fn compare(kind: OutputTermKind, count: usize, samples: usize, tolerance: f64) -> usize {
     let models = (0..).filter_map(|seed| Some((seed, model(seed, kind)?)));
     let (mut values, mut worst) = (0, 0.0_f64);
     for (seed, (model, points)) in models.take(count) {
         let engine = Engine::new(&model).unwrap();
         let output = &model.outputs[0];
         let range = match kind {
-            Kind::Numbers => 1.0,
-            Kind::Straight | Kind::Curved => output.variable.high - output.variable.low,
+            OutputTermKind::Numbers => 1.0,
+            OutputTermKind::Straight | OutputTermKind::Curved => {
+                output.variable.high - output.variable.low
+            }
         };
         for point in &points {
             let outcome = engine.evaluate(point).unwrap()[0];
@@ -57,25 +59,25 @@ fn compare(kind: Kind, count: usize, samples: usize, tolerance: f64) -> usize {
 
 #[test]
 fn straight_terms_have_the_interval_of_all_switch_points() {
-    assert!(compare(Kind::Straight, 40, 20_000, 1e-9) > 60);
+    assert!(compare(OutputTermKind::Straight, 40, 20_000, 1e-9) > 60);
 }
 
 #[test]
 fn curved_terms_and_all_operators_have_the_interval_of_all_switch_points() {
-    assert!(compare(Kind::Curved, 25, 20_000, 1e-9) > 30);
+    assert!(compare(OutputTermKind::Curved, 25, 20_000, 1e-9) > 30);
 }
 
 #[test]
 fn weighted_numbers_have_the_interval_of_all_corners() {
-    assert!(compare(Kind::Numbers, 400, 0, 1e-12) > 800);
+    assert!(compare(OutputTermKind::Numbers, 400, 0, 1e-12) > 800);
 }
 
 #[test]
 #[ignore = "takes minutes"]
 fn thousands_of_intervals() {
-    assert!(compare(Kind::Straight, 1000, 40_000, 1e-9) > 1500);
-    assert!(compare(Kind::Curved, 500, 40_000, 1e-9) > 600);
-    assert!(compare(Kind::Numbers, 20_000, 0, 1e-12) > 40_000);
+    assert!(compare(OutputTermKind::Straight, 1000, 40_000, 1e-9) > 1500);
+    assert!(compare(OutputTermKind::Curved, 500, 40_000, 1e-9) > 600);
+    assert!(compare(OutputTermKind::Numbers, 20_000, 0, 1e-12) > 40_000);
 }
 
 /// Returns the centroid of a word of the code book of Wu and Mendel (A comparative study of ranking methods, similarity measures and

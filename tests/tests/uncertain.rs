@@ -3,7 +3,7 @@
 
 use fastrand::Rng;
 use flagred_tests::random_models;
-use flagred_tests::random_type2::{Kind, model};
+use flagred_tests::random_type2::{OutputTermKind, model};
 use fuzzy::engine::Interval;
 use fuzzy::{Engine, Model};
 
@@ -99,7 +99,11 @@ fn random(count: usize, points: usize) {
         "all operators, defuzzifiers and membership functions",
         ratios,
     );
-    for kind in [Kind::Straight, Kind::Curved, Kind::Numbers] {
+    for kind in [
+        OutputTermKind::Straight,
+        OutputTermKind::Curved,
+        OutputTermKind::Numbers,
+    ] {
         let models = (0..).filter_map(|seed| Some((seed, model(seed, kind)?.0)));
         let ratios = models.take(count / 4);
         let ratios = ratios.flat_map(|(seed, model)| compare(seed, &model, points, 0.3));

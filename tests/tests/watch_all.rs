@@ -32,10 +32,10 @@ const TROUBLED: usize = 123;
 const SILENT: usize = 321;
 
 /// When the commands of a vehicle at a time of its clock, in ms, were sent.
-type Sent = Arc<Mutex<HashMap<(usize, u32), Instant>>>;
+type SendTimes = Arc<Mutex<HashMap<(usize, u32), Instant>>>;
 
 /// All lines of the watch, the delay of each risk, and resource figures.
-struct Watched {
+struct WatchResults {
     lines: Vec<Value>,
     late_ms: Vec<f64>,
     resident_kb: u64,
@@ -55,7 +55,7 @@ fn outputs([a, b, c, d]: [u16; 4]) -> [u16; 16] {
     [a, b, c, d, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]
 }
 
-fn fly(seconds: u32) -> Watched {
+fn fly(seconds: u32) -> WatchResults {
     let mut child = flagred()
         .args([
             "watch",
@@ -83,7 +83,7 @@ fn fly(seconds: u32) -> Watched {
     let names: HashMap<String, usize> = (0..VEHICLES)
         .map(|vehicle| (name(&sockets, vehicle), vehicle))
         .collect();
-    let sent = Sent::default();
+    let sent = SendTimes::default();
     let reader = {
         let sent = Arc::clone(&sent);
         std::thread::spawn(move || {
@@ -160,7 +160,7 @@ fn fly(seconds: u32) -> Watched {
     assert!(interrupted.unwrap().success());
     let (lines, mut late_ms) = reader.join().unwrap();
     late_ms.sort_by(f64::total_cmp);
-    Watched {
+    WatchResults {
         lines,
         late_ms,
         resident_kb,
@@ -199,8 +199,8 @@ fn cpu_s(process: u32) -> f64 {
 }
 
 /// The sum of the shares of packets that each vehicle lost; on a busy machine, the system drops some.
-fn check(watched: &Watched, seconds: u32) -> f64 {
-    let summaries: Vec<&Value> = (watched.lines.iter())
+fn check(results: &WatchResults, seconds: u32) -> f64 {
+    let summaries: Vec<&Value> = (results.lines.iter())
         .filter(|line| line["verdict"].is_string())
         .collect();
     assert_eq!(summaries.len(), VEHICLES);
@@ -238,25 +238,25 @@ fn check(watched: &Watched, seconds: u32) -> f64 {
     assert!(summaries.iter().all(|line| line["risk_max"].is_number()));
     let share = |line: &&Value| line["lost_share"].as_f64().unwrap();
     let lost: f64 = summaries.iter().map(share).sum();
-    let last = watched.lines.last().unwrap();
+    let last = results.lines.last().unwrap();
     assert_eq!(
         (&last["vehicles"], &last["dropped_lines"]),
         (&VEHICLES.into(), &0.into())
     );
-    assert_eq!(watched.code, Some(1));
+    assert_eq!(results.code, Some(1));
     // A risk line for each command after the first two seconds.
     let expected = (seconds - 5) as usize * RATE_HZ as usize * VEHICLES;
     assert!(
-        watched.late_ms.len() > expected,
+        results.late_ms.len() > expected,
         "{} of {expected}",
-        watched.late_ms.len()
+        results.late_ms.len()
     );
-    let at = |share: f64| watched.late_ms[(watched.late_ms.len() as f64 * share) as usize];
+    let at = |share: f64| results.late_ms[(results.late_ms.len() as f64 * share) as usize];
     println!(
         "lost {lost}; {VEHICLES} vehicles at {RATE_HZ} Hz for {seconds} s: {:.0} % of a core, {} kB, {} lines; from packet to line median {:.1} ms, 99 % {:.1} ms",
-        100.0 * watched.cpu_share,
-        watched.resident_kb,
-        watched.late_ms.len(),
+        100.0 * results.cpu_share,
+        results.resident_kb,
+        results.late_ms.len(),
         at(0.5),
         at(0.99)
     );
@@ -265,26 +265,26 @@ fn check(watched: &Watched, seconds: u32) -> f64 {
 
 #[test]
 fn five_hundred_vehicles_are_followed_and_the_one_in_trouble_is_listed_first() {
-    let watched = fly(16);
-    check(&watched, 16);
+    let results = fly(16);
+    check(&results, 16);
     let (of_all, of_one) = (schema("watch-all"), schema("watch"));
-    for line in &watched.lines {
+    for line in &results.lines {
         assert_eq!(errors(&of_all, line), [""; 0], "{line}");
         if line["watch"].is_object() {
             assert_eq!(errors(&of_one, &line["watch"]), [""; 0], "{line}");
         }
     }
-    assert!(watched.resident_kb < 300_000, "{} kB", watched.resident_kb);
+    assert!(results.resident_kb < 300_000, "{} kB", results.resident_kb);
 }
 
 /// On an otherwise idle machine.
 #[test]
 #[ignore = "ten minutes on a machine that does nothing else"]
 fn five_hundred_vehicles_for_ten_minutes() {
-    let watched = fly(600);
-    assert_eq!(check(&watched, 600), 0.0, "packets were lost");
-    let late_ms = watched.late_ms[watched.late_ms.len() * 99 / 100];
-    assert!(late_ms < 50.0 && watched.cpu_share < 1.0, "{late_ms} ms");
+    let results = fly(600);
+    assert_eq!(check(&results, 600), 0.0, "packets were lost");
+    let late_ms = results.late_ms[results.late_ms.len() * 99 / 100];
+    assert!(late_ms < 50.0 && results.cpu_share < 1.0, "{late_ms} ms");
 }
 
 #[test]

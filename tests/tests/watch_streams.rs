@@ -6,7 +6,7 @@ use std::{fs, io::Read, path::Path};
 use flagred::{estimator::Estimator, flight::Verdict, shipped};
 use flagred_cli::fuzzing::Watch;
 use flagred_flightlog::mavlink::{
-    Next,
+    PacketScan,
     dialect::{MavCmd, MavMessage},
     next_packet,
 };
@@ -35,7 +35,7 @@ impl Replay {
         while let Some((stamp, tail)) = rest.split_first_chunk::<STAMP>() {
             let stamp_us = u64::from_be_bytes(*stamp);
             let at_s = (stamp_us - *first_us.get_or_insert(stamp_us)) as f64 * 1e-6;
-            let Next::Packet(packet) = next_packet(tail) else {
+            let PacketScan::Packet(packet) = next_packet(tail) else {
                 panic!("not a packet after {at_s} s")
             };
             while now_s + TICK_S < at_s {
@@ -59,7 +59,7 @@ impl Replay {
             .map(|line| serde_json::from_str(line).unwrap());
         self.events.extend(events);
         for bytes in &told.packets {
-            let Next::Packet(packet) = next_packet(bytes) else {
+            let PacketScan::Packet(packet) = next_packet(bytes) else {
                 panic!("{bytes:?}")
             };
             self.sent.extend(packet.message());

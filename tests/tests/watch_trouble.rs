@@ -231,10 +231,10 @@ fn wild(vehicle: &mut StandIn, t_us: u32) {
 /// The checksum of these tests is that of the library, so that extreme values arrive and are not skipped as damaged.
 #[test]
 fn packets_with_extreme_values_are_valid_packets() {
-    use flagred_flightlog::mavlink::{Next, next_packet};
+    use flagred_flightlog::mavlink::{PacketScan, next_packet};
     for (message, extra, payload, _) in messages_read(1) {
         let bytes = packet(message, extra, &payload);
-        let Next::Packet(packet) = next_packet(&bytes) else {
+        let PacketScan::Packet(packet) = next_packet(&bytes) else {
             panic!("message {message} is not a packet");
         };
         assert_eq!(packet.id, u32::from(message));

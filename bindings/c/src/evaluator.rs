@@ -2,7 +2,7 @@
 
 use flagred::board::{
     self, Evaluator, RuleMemory,
-    table::{self, Partial, State, Strongest},
+    table::{self, PartialConjunction, State, StrongestRule},
 };
 
 use crate::{array::Array, memory::Block, rules::Rules, status::Status};
@@ -14,7 +14,7 @@ pub(crate) struct CEvaluator(Evaluator<'static>);
 /// `struct flagred_outcome`.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
-pub(crate) struct Outcome {
+pub(crate) struct COutcome {
     value: f64,
     coverage: f64,
     state: i32,
@@ -22,10 +22,10 @@ pub(crate) struct Outcome {
     clamped: i32,
 }
 
-impl Outcome {
-    fn of(outcome: &table::Outcome) -> Outcome {
+impl COutcome {
+    fn of(outcome: &table::Outcome) -> COutcome {
         let dominant = outcome.dominant_rule.map(|rule| i32::try_from(rule).ok());
-        Outcome {
+        COutcome {
             value: outcome.value().unwrap_or(f64::NAN),
             coverage: outcome.coverage,
             state: match outcome.state {
@@ -104,8 +104,8 @@ unsafe fn start(
     let outputs = rules.table.outputs.len();
     let memory = RuleMemory {
         numbers: block.fill(rules.numbers(), 0.0)?,
-        partials: block.fill(rules.partials(), Partial::NONE)?,
-        strongest: block.fill(outputs, Strongest::NONE)?,
+        partials: block.fill(rules.partials(), PartialConjunction::NONE)?,
+        strongest: block.fill(outputs, StrongestRule::NONE)?,
         outcomes: block.fill(outputs, table::Outcome::UNDEFINED)?,
         own: block.fill(outputs, table::Outcome::UNDEFINED)?,
     };
@@ -124,7 +124,7 @@ pub(crate) unsafe extern "C" fn flagred_rules_evaluate(
     evaluator: *mut CEvaluator,
     inputs: *const f64,
     input_count: usize,
-    outcomes: *mut Outcome,
+    outcomes: *mut COutcome,
     output_count: usize,
 ) -> i32 {
     let inputs = Array {
@@ -142,7 +142,7 @@ pub(crate) unsafe extern "C" fn flagred_rules_evaluate(
     };
     for (i, outcome) in evaluated.iter().enumerate() {
         // SAFETY: the caller promises room for this number of outcomes.
-        unsafe { outcomes.add(i).write(Outcome::of(outcome)) };
+        unsafe { outcomes.add(i).write(COutcome::of(outcome)) };
     }
     Status::Ok as i32
 }

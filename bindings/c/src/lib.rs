@@ -16,7 +16,7 @@ use core::ffi::{CStr, c_char};
 use flagred::{
     board::{
         Factors, Memory, Monitor, SetupError,
-        table::{Outcome, Partial, Strongest},
+        table::{Outcome, PartialConjunction, StrongestRule},
     },
     channel::ChannelState,
     margin::Range,
@@ -159,8 +159,8 @@ unsafe fn start(
     let sizes = plan.sizes();
     let memory = Memory {
         numbers: block.fill(sizes.numbers, 0.0)?,
-        partials: block.fill(sizes.partials, Partial::NONE)?,
-        strongest: block.fill(sizes.outputs, Strongest::NONE)?,
+        partials: block.fill(sizes.partials, PartialConjunction::NONE)?,
+        strongest: block.fill(sizes.outputs, StrongestRule::NONE)?,
         outcomes: block.fill(sizes.outputs, Outcome::UNDEFINED)?,
         own: block.fill(sizes.outputs, Outcome::UNDEFINED)?,
         seen: block.repeat(sizes.channels, |_| Ok(ChannelState::IDLE))?,

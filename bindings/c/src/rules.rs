@@ -3,10 +3,10 @@
 use flagred::board::{
     self,
     table::{
-        self, Action, Axis, Base, Block, Coefficient, Conjunction, Conjunctions, Consequent, Curve,
-        Dimension, Disjunction, Edge, Flank, FuzzySet, Hedge, Input, Knot, LayeredSet, Layers,
-        Line, Moment, Node, Output, Pair, Point, Program, Section, SetTerm, Sizes, Stage, Step,
-        Strand, Table,
+        self, Action, AntecedentStep, Axis, Base, Block, Coefficient, Conjunction, Conjunctions,
+        Consequent, Curve, Dimension, Disjunction, Edge, Flank, FuzzySet, Hedge, Input, Knot,
+        LayeredSet, Layers, Line, Moment, Node, Output, Pair, Point, Program, Section, SetTerm,
+        Sizes, Stage, Strand, Table,
     },
 };
 

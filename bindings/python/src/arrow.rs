@@ -29,10 +29,10 @@ use crate::errors::data_error;
 
 /// A stream that is passed to another library.
 #[repr(transparent)]
-struct Exported(FFI_ArrowArrayStream);
+struct ExportedStream(FFI_ArrowArrayStream);
 
 // SAFETY: the stream owns its batches, which are `Send`, and nothing else refers to it.
-unsafe impl Send for Exported {}
+unsafe impl Send for ExportedStream {}
 
 /// Batches as a capsule.
 pub(crate) fn export(
@@ -43,11 +43,11 @@ pub(crate) fn export(
     let reader = RecordBatchIterator::new(batches.into_iter().map(Ok), schema);
     let stream = FFI_ArrowArrayStream::new(Box::new(reader));
     // A consumer moves the stream out and leaves an empty one in the capsule; the capsule releases whatever remains.
-    PyCapsule::new_with_value(py, Exported(stream), c"arrow_array_stream")
+    PyCapsule::new_with_value(py, ExportedStream(stream), c"arrow_array_stream")
 }
 
 /// A table of another library.
-pub(crate) struct Imported {
+pub(crate) struct ForeignTable {
     fields: Fields,
     source: Source,
 }
@@ -62,14 +62,14 @@ enum Source {
 ///
 /// # Errors
 /// The value is not a table, or its capsules violate Arrow's protocol.
-pub(crate) fn import(table: &Bound<'_, PyAny>) -> PyResult<Imported> {
+pub(crate) fn import(table: &Bound<'_, PyAny>) -> PyResult<ForeignTable> {
     match table.hasattr("__arrow_c_stream__")? {
         true => import_stream(&table.call_method0("__arrow_c_stream__")?),
         false => import_batch(&table.call_method0("__arrow_c_array__")?),
     }
 }
 
-fn import_stream(capsule: &Bound<'_, PyAny>) -> PyResult<Imported> {
+fn import_stream(capsule: &Bound<'_, PyAny>) -> PyResult<ForeignTable> {
     let pointer = content(capsule, c"arrow_array_stream")?;
     // SAFETY: a capsule of this name points to an ArrowArrayStream, which is moved out and marked as released.
     let mut stream = unsafe { FFI_ArrowArrayStream::from_raw(pointer.cast().as_ptr()) };
@@ -82,14 +82,14 @@ fn import_stream(capsule: &Bound<'_, PyAny>) -> PyResult<Imported> {
     if code != 0 {
         return Err(data_error(last_error(&mut stream, code), None));
     }
-    Ok(Imported {
+    Ok(ForeignTable {
         fields: fields(&schema)?,
         source: Source::Stream(stream),
     })
 }
 
 /// One batch: an Arrow array of structs.
-fn import_batch(capsules: &Bound<'_, PyAny>) -> PyResult<Imported> {
+fn import_batch(capsules: &Bound<'_, PyAny>) -> PyResult<ForeignTable> {
     let pair: Result<(Bound<'_, PyAny>, Bound<'_, PyAny>), PyErr> = capsules.extract();
     let (schema, array) = pair.map_err(|_| mismatched("a pair of capsules"))?;
     let schema = content(&schema, c"arrow_schema")?;
@@ -106,7 +106,7 @@ fn import_batch(capsules: &Bound<'_, PyAny>) -> PyResult<Imported> {
     // SAFETY: as above; it is not released, so its texts are valid.
     let fields = fields(unsafe { schema.cast::<FFI_ArrowSchema>().as_ref() })?;
     let batch = batch(array, &fields).map_err(|error| data_error(error, None))?;
-    Ok(Imported {
+    Ok(ForeignTable {
         fields,
         source: Source::Batch(Some(batch)),
     })
@@ -122,7 +122,7 @@ struct SchemaLayout {
     release: Option<unsafe extern "C" fn(*mut c_void)>,
 }
 
-impl Imported {
+impl ForeignTable {
     /// The names of the columns, in their order.
     pub(crate) fn names(&self) -> Vec<String> {
         self.fields
@@ -179,10 +179,10 @@ fn last_error(stream: &mut FFI_ArrowArrayStream, code: i32) -> String {
     }
 }
 
-struct Panicked;
+struct PanicError;
 
 /// Runs a function that may panic, without a message on standard error: the caller reports its own error.
-fn unpanicked<T>(run: impl FnOnce() -> T) -> Result<T, Panicked> {
+fn unpanicked<T>(run: impl FnOnce() -> T) -> Result<T, PanicError> {
     thread_local! {
         static IS_SILENT: Cell<bool> = const { Cell::new(false) };
     }
@@ -198,7 +198,7 @@ fn unpanicked<T>(run: impl FnOnce() -> T) -> Result<T, Panicked> {
     IS_SILENT.set(true);
     let done = catch_unwind(AssertUnwindSafe(run));
     IS_SILENT.set(false);
-    done.map_err(|_| Panicked)
+    done.map_err(|_| PanicError)
 }
 
 /// The columns of a table.
@@ -214,7 +214,7 @@ fn fields(schema: &FFI_ArrowSchema) -> PyResult<Fields> {
             ))
         }
         Ok(Err(error)) => Err(data_error(error, None)),
-        Err(Panicked) => Err(mismatched("a schema")),
+        Err(PanicError) => Err(mismatched("a schema")),
     }
 }
 
@@ -229,7 +229,7 @@ fn batch(array: FFI_ArrowArray, fields: &Fields) -> Result<StructArray, String> 
         // SAFETY: according to the protocol, the array matches the schema.
         unsafe { from_ffi_and_data_type(array, kind) }.map(StructArray::from)
     });
-    read.map_err(|Panicked| broken())?
+    read.map_err(|PanicError| broken())?
         .map_err(|error| error.to_string())
 }
 

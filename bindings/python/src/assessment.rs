@@ -36,7 +36,7 @@ pub(crate) struct AssessmentData {
     /// The flight and its assessment; after unpickling, created again at the first use.
     subject: OnceLock<Arc<Subject>>,
     /// Verdict, findings and summary in JSON, as they are pickled.
-    said: Option<String>,
+    json_text: Option<String>,
 }
 
 impl AssessmentData {
@@ -65,12 +65,12 @@ impl AssessmentData {
 #[pymethods]
 impl AssessmentData {
     #[new]
-    #[pyo3(signature = (flight, profile, step_s, said = None))]
+    #[pyo3(signature = (flight, profile, step_s, json_text = None))]
     fn new(
         flight: &Bound<'_, FlightData>,
         profile: &Profile,
         step_s: Option<f64>,
-        said: Option<String>,
+        json_text: Option<String>,
     ) -> PyResult<Self> {
         if let Some(step_s) = step_s.filter(|step_s| step_s.is_nan() || *step_s <= 0.0) {
             let help = "write a number of seconds above 0, or None for no steps".to_owned();
@@ -82,9 +82,9 @@ impl AssessmentData {
             loaded: Arc::clone(&profile.loaded),
             step_s,
             subject: OnceLock::new(),
-            said,
+            json_text,
         };
-        if new.said.is_none() {
+        if new.json_text.is_none() {
             new.subject(flight.py())?;
         }
         Ok(new)
@@ -92,15 +92,15 @@ impl AssessmentData {
 
     /// Verdict, findings and summary, in JSON.
     fn _json(&self, py: Python<'_>) -> PyResult<String> {
-        if let Some(said) = &self.said {
-            return Ok(said.clone());
+        if let Some(json_text) = &self.json_text {
+            return Ok(json_text.clone());
         }
         let (_, flight, assessed) = self.parts(py)?;
         let teller = Teller {
             estimator: &self.loaded.estimator,
             motors: &flight.motors,
         };
-        Ok(said(assessed, teller))
+        Ok(json_text(assessed, teller))
     }
 
     /// The interval of the steps in seconds, as the caller chose it.
@@ -146,7 +146,7 @@ pub(crate) fn _page(title: &str, body: String) -> String {
 }
 
 /// Verdict, findings and summary, in JSON.
-pub(crate) fn said(assessed: &Assessment, teller: Teller<'_>) -> String {
+pub(crate) fn json_text(assessed: &Assessment, teller: Teller<'_>) -> String {
     let findings = assessed.findings.iter();
     let findings: Vec<_> = findings.map(|f| FindingDocument::new(f, teller)).collect();
     json!({

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use crate::{errors::data_error, threads::interruptible};
 
 /// Centers, degrees, loss and iterations.
-type Found<'py> = (
+type ClusterArrays<'py> = (
     Bound<'py, PyArray2<f64>>,
     Bound<'py, PyArray2<f64>>,
     f64,
@@ -24,7 +24,7 @@ pub(crate) fn _c_means<'py>(
     iterations: u32,
     starts: u32,
     seed: u64,
-) -> PyResult<Found<'py>> {
+) -> PyResult<ClusterArrays<'py>> {
     let settings = Settings {
         clusters,
         fuzzifier,

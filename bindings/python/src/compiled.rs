@@ -29,7 +29,7 @@ use crate::{
 };
 
 /// A compiled rule set, with the information that Python needs to evaluate it.
-pub(crate) struct Compiled {
+pub(crate) struct CompiledRuleSet {
     /// An id that is unique within the process.
     id: u64,
     pub(crate) engine: Engine,
@@ -59,12 +59,12 @@ pub(crate) enum Inputs<'py> {
     Frame(Bound<'py, PyAny>),
 }
 
-impl Compiled {
-    pub(crate) fn new(py: Python<'_>, engine: Engine) -> Compiled {
+impl CompiledRuleSet {
+    pub(crate) fn new(py: Python<'_>, engine: Engine) -> CompiledRuleSet {
         static NEXT: AtomicU64 = AtomicU64::new(0);
         let inputs = engine.input_names();
         let inputs = inputs.map(|name| PyString::intern(py, name).unbind());
-        Compiled {
+        CompiledRuleSet {
             id: NEXT.fetch_add(1, Ordering::Relaxed),
             inputs: inputs.collect(),
             engine,

@@ -12,8 +12,8 @@ use arrow_array::{ArrayRef, BooleanArray, Int32Array, RecordBatch};
 use arrow_schema::{Field, Schema};
 use flagred::shipped;
 use flagred_evaluation::{
-    Case, Document, ERROR, Estimators, Evaluation, LeftOut, Record, Rows, Unusable, cases, files,
-    page, svg, words,
+    Case, Document, ERROR, Estimators, Evaluation, FlightError, FlightTable, LeftOutFile, Record,
+    cases, files, page, svg, words,
 };
 use flagred_flightlog::Flight;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
@@ -60,17 +60,17 @@ enum Source {
 }
 
 /// The reason why the work gave no result.
-enum Failed {
-    Unusable(Unusable),
+enum EvaluationFailure {
+    Flight(FlightError),
     NoSteps,
 }
 
-impl Failed {
+impl EvaluationFailure {
     fn raise(self, py: Python<'_>) -> PyErr {
         match self {
-            Failed::Unusable(Unusable::Read(error)) => read_error(py, &error),
-            Failed::Unusable(why) => log_error(&why, why.help()),
-            Failed::NoSteps => log_error(
+            EvaluationFailure::Flight(FlightError::Read(error)) => read_error(py, &error),
+            EvaluationFailure::Flight(why) => log_error(&why, why.help()),
+            EvaluationFailure::NoSteps => log_error(
                 "there are no steps to evaluate in these logs",
                 Some(
                     "a log needs motor commands, attitude, and 20 s in the air; `flagred.read_log(log).gaps` lists what is missing in a log",
@@ -96,12 +96,13 @@ fn estimators(py: Python<'_>, asked: &[PyRef<'_, Profile>]) -> PyResult<Estimato
 
 /// The flights and files in their order, including those in folders, and whether each was named itself: a folder may contain
 /// files that are not flights.
-fn named(logs: Vec<Source>) -> Result<Vec<(Source, bool)>, Failed> {
+fn named(logs: Vec<Source>) -> Result<Vec<(Source, bool)>, EvaluationFailure> {
     let mut found = Vec::new();
     for log in logs {
         match log {
             Source::Path(path) => {
-                let files = files(&[path]).map_err(|error| Failed::Unusable(error.into()))?;
+                let files =
+                    files(&[path]).map_err(|error| EvaluationFailure::Flight(error.into()))?;
                 found.extend(
                     files
                         .into_iter()
@@ -121,7 +122,7 @@ fn evaluate(
     horizon_s: f64,
     skip_bad_logs: bool,
     stop: &AtomicBool,
-) -> Result<Evaluation, Failed> {
+) -> Result<Evaluation, EvaluationFailure> {
     let logs = named(logs)?;
     // Logs after the first one that ends the evaluation are not read.
     let last = AtomicUsize::new(usize::MAX);
@@ -138,18 +139,20 @@ fn evaluate(
         }
         Some(record)
     });
-    let each: Vec<Option<Result<Record, Unusable>>> = each.collect();
+    let each: Vec<Option<Result<Record, FlightError>>> = each.collect();
     let (mut records, mut left_out) = (Vec::new(), Vec::new());
     for ((log, is_named), record) in logs.iter().zip(each) {
         match record {
             Some(Ok(record)) => records.push(record),
-            Some(Err(why)) if *is_named && !skip_bad_logs => return Err(Failed::Unusable(why)),
-            Some(Err(why)) => left_out.push(LeftOut::new(name(log), &why)),
+            Some(Err(why)) if *is_named && !skip_bad_logs => {
+                return Err(EvaluationFailure::Flight(why));
+            }
+            Some(Err(why)) => left_out.push(LeftOutFile::new(name(log), &why)),
             None => {}
         }
     }
     let evaluation = Evaluation::of_flights(estimators, horizon_s, records, left_out, &|| ());
-    evaluation.ok_or(Failed::NoSteps)
+    evaluation.ok_or(EvaluationFailure::NoSteps)
 }
 
 fn name(log: &Source) -> String {
@@ -186,7 +189,7 @@ fn row_cases(rows: &FlightRows<'_>, estimators: &Estimators) -> PyResult<(Vec<Ca
             .and_then(|texts| texts.get(row))
             .map_or("", String::as_str)
     };
-    let table = Rows {
+    let table = FlightTable {
         len: rows.texts.first().map_or(0, Vec::len),
         number: &number,
         text: &text,

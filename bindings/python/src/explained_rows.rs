@@ -8,7 +8,7 @@ use pyo3::{prelude::*, types::PyDict};
 use rayon::prelude::*;
 
 use crate::{
-    compiled::Compiled,
+    compiled::CompiledRuleSet,
     errors::data_error,
     threads::{interruptible, pool},
 };
@@ -56,7 +56,7 @@ fn explained(engine: &Engine, columns: &[Vec<f64>]) -> Result<Vec<Line>, Evaluat
 /// The lines of all rows as columns; rules are counted from 1. `columns` are in the order of the inputs.
 pub(crate) fn explained_rows<'py>(
     py: Python<'py>,
-    compiled: Arc<Compiled>,
+    compiled: Arc<CompiledRuleSet>,
     columns: &[PyReadonlyArray1<'py, f64>],
 ) -> PyResult<Bound<'py, PyDict>> {
     let columns = columns.iter().map(|column| column.as_array().to_vec());

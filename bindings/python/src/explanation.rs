@@ -9,7 +9,7 @@ use fuzzy::{
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::{prelude::*, types::PyDict};
 
-use crate::compiled::Compiled;
+use crate::compiled::CompiledRuleSet;
 
 /// The explanation of the outputs at one point.
 #[pyclass(frozen, module = "flagred.types")]
@@ -24,7 +24,7 @@ pub(crate) struct Explanation {
     #[pyo3(get)]
     outputs: Vec<Py<ExplainedOutput>>,
     explanation: engine::Explanation,
-    compiled: Arc<Compiled>,
+    compiled: Arc<CompiledRuleSet>,
 }
 
 /// An input with the degree of each of its terms.
@@ -139,7 +139,7 @@ impl Explanation {
     pub(crate) fn new(
         py: Python<'_>,
         explanation: engine::Explanation,
-        compiled: Arc<Compiled>,
+        compiled: Arc<CompiledRuleSet>,
     ) -> PyResult<Explanation> {
         let input = |input: &engine::ExplainedInput| {
             let terms = degrees(py, &input.terms)?;

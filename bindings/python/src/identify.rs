@@ -4,14 +4,14 @@ use std::ops::ControlFlow;
 
 use flagred_tuning::{
     Data,
-    identify::{Antecedents, Consequents, Identification, identify, judge},
+    identify::{Antecedents, Consequents, Identification, cross_validate, identify},
 };
 use fuzzy::yaml;
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 
 use crate::{
-    rows::{Failed, choice},
+    rows::{DerivationError, choice},
     threads::interruptible,
 };
 
@@ -59,18 +59,18 @@ impl IdentifyOptions {
 /// A figure and its interval.
 type Figure = (f64, f64, f64);
 
-/// The result inside `flagred.types.Identified`.
+/// The result inside `flagred.types.IdentifyResult`.
 #[derive(IntoPyObject)]
-pub(crate) struct Identified {
+pub(crate) struct IdentifyResult {
     model: String,
     /// The selected inputs, their numbers of terms, and the cross-validation error.
     steps: Vec<(String, usize, f64)>,
     without_rows: usize,
-    validation: Option<Worth>,
+    validation: Option<IdentifyValidation>,
 }
 
 #[derive(IntoPyObject)]
-pub(crate) struct Worth {
+pub(crate) struct IdentifyValidation {
     folds: usize,
     without_value: usize,
     identified: Figure,
@@ -89,7 +89,7 @@ pub(crate) fn _identify(
     truths: PyReadonlyArray1<'_, f64>,
     groups: Option<PyReadonlyArray1<'_, u32>>,
     options: IdentifyOptions,
-) -> PyResult<Identified> {
+) -> PyResult<IdentifyResult> {
     let settings = options.settings()?;
     let data = Data {
         inputs: columns
@@ -103,31 +103,31 @@ pub(crate) fn _identify(
     let (folds, validation) = (options.folds, options.validation);
     let found = interruptible(py, move || {
         let found = identify(&names, &output, &data, &settings)?;
-        let judged = match validation {
-            true => judge(&names, &output, &data, &settings, folds, &mut |_| {
+        let validation = match validation {
+            true => cross_validate(&names, &output, &data, &settings, folds, &mut |_| {
                 ControlFlow::Continue(())
             })?,
             false => None,
         };
-        Ok((found, judged))
+        Ok((found, validation))
     })?;
-    let (found, judged) =
-        found.map_err(|error: flagred_tuning::TuneError| Failed::from(error).raise(py))?;
+    let (found, validation) =
+        found.map_err(|error: flagred_tuning::TuneError| DerivationError::from(error).raise(py))?;
     let figure = |interval: flagred_tuning::Interval| (interval.value, interval.low, interval.high);
     let steps = found.steps.into_iter();
-    Ok(Identified {
+    Ok(IdentifyResult {
         model: yaml::to_string(&found.model),
         steps: steps
             .map(|step| (step.input, step.terms, step.left_out))
             .collect(),
         without_rows: found.without_rows,
-        validation: judged.map(|judged| Worth {
-            folds: judged.folds,
-            without_value: judged.without_value,
-            identified: figure(judged.identified),
-            linear: figure(judged.linear),
-            mean: figure(judged.mean),
-            ratio: figure(judged.ratio),
+        validation: validation.map(|validation| IdentifyValidation {
+            folds: validation.folds,
+            without_value: validation.without_value,
+            identified: figure(validation.identified),
+            linear: figure(validation.linear),
+            mean: figure(validation.mean),
+            ratio: figure(validation.ratio),
         }),
     })
 }

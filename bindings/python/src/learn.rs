@@ -5,13 +5,13 @@ use flagred_evaluation::learning::{self, Row};
 use fuzzy::{
     Engine, Model,
     check::counterexamples,
-    learn::{Direction, LearnError, Learner, Resolution, Settings, Unchained},
-    model::Step,
+    learn::{Direction, LastStage, LearnError, Learner, Resolution, Settings},
+    model::ProvenanceStep,
 };
 use pyo3::prelude::*;
 
 use crate::{
-    rows::{Failed, Rows, choice, claims, directed, with_step},
+    rows::{DerivationError, RowArguments, choice, claims, directed, with_step},
     rule_set::RuleSet,
     threads::interruptible,
 };
@@ -29,9 +29,9 @@ pub(crate) struct LearnOptions {
     validation: bool,
 }
 
-/// The result inside `flagred.types.Learned`.
+/// The result inside `flagred.types.LearnResult`.
 #[derive(IntoPyObject)]
-pub(crate) struct Learned {
+pub(crate) struct LearnResult {
     model: String,
     rows: u64,
     refused: Vec<String>,
@@ -77,9 +77,9 @@ impl LearnOptions {
 pub(crate) fn _learn(
     py: Python<'_>,
     rule_set: &RuleSet,
-    rows: Rows<'_>,
+    rows: RowArguments<'_>,
     options: LearnOptions,
-) -> PyResult<Learned> {
+) -> PyResult<LearnResult> {
     let settings = options.settings()?;
     let (model, text) = (rule_set.model(Model::clone), rule_set.text());
     let (all, skip) = (rows.rows(), rows.skip_bad_rows);
@@ -96,9 +96,10 @@ fn learn_rules(
     skip_bad_rows: bool,
     settings: Settings,
     options: &LearnOptions,
-) -> Result<Learned, Failed> {
-    let wrong = |error: LearnError| Failed::Data(error.to_string(), Some(error.help().into()));
-    let chain = Unchained::new(&whole).map_err(wrong)?;
+) -> Result<LearnResult, DerivationError> {
+    let wrong =
+        |error: LearnError| DerivationError::Data(error.to_string(), Some(error.help().into()));
+    let chain = LastStage::new(&whole).map_err(wrong)?;
     let mut model = chain.model().clone();
     if !options.keep_rules {
         model.rules.clear();
@@ -117,16 +118,16 @@ fn learn_rules(
         }
     }
     if !refused.is_empty() && !skip_bad_rows {
-        return Err(Failed::Refused(refused));
+        return Err(DerivationError::Refused(refused));
     }
     if rows.is_empty() {
-        return Err(Failed::data("there are no rows to learn from"));
+        return Err(DerivationError::data("there are no rows to learn from"));
     }
     let validation = match options.validation {
         true => {
             let gap = GapSettings::default();
             let errors = learning::cross_validate(&model, &settings, &gap, &rows);
-            Some(errors.map_err(Failed::data)?)
+            Some(errors.map_err(DerivationError::data)?)
         }
         false => None,
     };
@@ -136,21 +137,21 @@ fn learn_rules(
     let broken = match claims.is_empty() || learned.model.rules.is_empty() {
         true => Vec::new(),
         false => {
-            let engine = Engine::new(&whole).map_err(Failed::Findings)?;
-            counterexamples(&engine, &claims).map_err(Failed::data)?
+            let engine = Engine::new(&whole).map_err(DerivationError::Findings)?;
+            counterexamples(&engine, &claims).map_err(DerivationError::data)?
         }
     };
     let rules = learned.model.rules.len() - model.rules.len();
-    let step = Step {
+    let step = ProvenanceStep {
         command: "flagred.learn".into(),
         rows: Some(learned.samples),
         note: Some(format!(
             "{} resolution; {rules} rules learned, {} of them without samples",
             options.resolve, learned.completed,
         )),
-        ..Step::default()
+        ..ProvenanceStep::default()
     };
-    Ok(Learned {
+    Ok(LearnResult {
         rows: learned.samples,
         refused,
         rules,

@@ -10,7 +10,7 @@ use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods};
 use pyo3::{prelude::*, sync::PyOnceLock, types::PyDict};
 
 use crate::{
-    compiled::Compiled,
+    compiled::CompiledRuleSet,
     errors::data_error,
     outcome::{NO_RULE, rule_number},
 };
@@ -19,12 +19,12 @@ use crate::{
 #[pyclass(frozen, module = "flagred.types")]
 pub(crate) struct DecisionMap {
     map: map::DecisionMap,
-    compiled: Arc<Compiled>,
+    compiled: Arc<CompiledRuleSet>,
 }
 
 impl DecisionMap {
     /// Evaluates the grid on the threads of the current pool.
-    pub(crate) fn new(compiled: Arc<Compiled>, grid: Grid, output: usize) -> PyResult<Self> {
+    pub(crate) fn new(compiled: Arc<CompiledRuleSet>, grid: Grid, output: usize) -> PyResult<Self> {
         let map = map::DecisionMap::new(&compiled.engine, grid, output);
         let map = map.map_err(|error| data_error(error, None))?;
         Ok(DecisionMap { map, compiled })

@@ -4,14 +4,14 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use flagred::{
     flight::Assessor,
-    monitor::{Craft, Sample, Update as Said, counted},
+    monitor::{Craft, Sample, Update as MonitorUpdate, counted},
 };
 use flagred_report::{document::FindingDocument, finding::Teller};
 use pyo3::prelude::*;
 use serde_json::json;
 
 use crate::{
-    assessment::{said, steps},
+    assessment::{json_text, steps},
     errors::data_error,
     profile::Profile,
     table::Table,
@@ -61,11 +61,11 @@ pub(crate) struct MonitorData {
     loaded: Arc<Loaded>,
     signals: Vec<String>,
     /// Created with the first sample, which determines the number of motors.
-    followed: Mutex<Option<Followed>>,
+    state: Mutex<Option<MonitorState>>,
     step_s: Option<f64>,
 }
 
-struct Followed {
+struct MonitorState {
     assessor: Assessor,
     motors: usize,
 }
@@ -79,8 +79,8 @@ fn numbers(values: &[Option<f64>]) -> Vec<f64> {
 }
 
 impl MonitorData {
-    fn followed(&self) -> MutexGuard<'_, Option<Followed>> {
-        self.followed.lock().unwrap_or_else(PoisonError::into_inner)
+    fn state(&self) -> MutexGuard<'_, Option<MonitorState>> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn teller(&self) -> Teller<'_> {
@@ -90,12 +90,12 @@ impl MonitorData {
         }
     }
 
-    fn begin(&self, motors: usize) -> PyResult<Followed> {
+    fn begin(&self, motors: usize) -> PyResult<MonitorState> {
         let signals: Vec<&str> = self.signals.iter().map(String::as_str).collect();
         let craft = Craft::new(motors).with_signals(&signals);
         let assessor = Assessor::new(&self.loaded.estimator, craft, self.step_s);
         let assessor = assessor.map_err(|error| data_error(error, None))?;
-        Ok(Followed { assessor, motors })
+        Ok(MonitorState { assessor, motors })
     }
 }
 
@@ -107,7 +107,7 @@ impl MonitorData {
         MonitorData {
             loaded: Arc::clone(&profile.loaded),
             signals: signals.unwrap_or_default(),
-            followed: Mutex::new(None),
+            state: Mutex::new(None),
             step_s,
         }
     }
@@ -135,13 +135,13 @@ impl MonitorData {
                 Some("scale it: 0 is the lower limit of the motor, 1 the upper limit".to_owned()),
             ));
         }
-        let mut followed = self.followed();
-        let followed = match &mut *followed {
-            Some(followed) => followed,
+        let mut state = self.state();
+        let state = match &mut *state {
+            Some(state) => state,
             none => none.insert(self.begin(commands.len())?),
         };
         for (what, expected, given) in [
-            ("commands", followed.motors, commands.len()),
+            ("commands", state.motors, commands.len()),
             ("signals", self.signals.len(), signals.len()),
         ] {
             if expected != given {
@@ -151,7 +151,7 @@ impl MonitorData {
                 ));
             }
         }
-        let update = followed.assessor.push(&Sample {
+        let update = state.assessor.push(&Sample {
             t_s,
             motors: &commands,
             in_air,
@@ -162,10 +162,10 @@ impl MonitorData {
 
     /// The findings that ended with the latest sample, in JSON.
     fn _ended(&self) -> String {
-        let followed = self.followed();
-        let ended = followed
+        let state = self.state();
+        let ended = state
             .as_ref()
-            .map_or(&[][..], |followed| followed.assessor.ended());
+            .map_or(&[][..], |state| state.assessor.ended());
         let ended: Vec<_> = ended
             .iter()
             .map(|f| FindingDocument::new(f, self.teller()))
@@ -175,16 +175,19 @@ impl MonitorData {
 
     /// Ends the flight and returns its assessment in JSON, and its steps; None without a sample.
     fn _finish(&self) -> PyResult<Option<(String, Table)>> {
-        let Some(mut followed) = self.followed().take() else {
+        let Some(mut state) = self.state().take() else {
             return Ok(None);
         };
-        let assessed = followed.assessor.finish();
-        Ok(Some((said(&assessed, self.teller()), steps(&assessed)?)))
+        let assessed = state.assessor.finish();
+        Ok(Some((
+            json_text(&assessed, self.teller()),
+            steps(&assessed)?,
+        )))
     }
 }
 
 impl MonitorData {
-    fn update(&self, update: &Said) -> Update {
+    fn update(&self, update: &MonitorUpdate) -> Update {
         let risk = update.risk.as_ref();
         let estimate = risk.ok();
         let profile = self.loaded.estimator.profile();

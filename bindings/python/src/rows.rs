@@ -5,7 +5,7 @@ use flagred_evaluation::learning::Row;
 use fuzzy::{
     Findings, Model,
     check::{Direction, Monotone},
-    model::Step,
+    model::ProvenanceStep,
 };
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
@@ -18,7 +18,7 @@ const SHOWN: usize = 20;
 /// Rows as arguments from Python.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub(crate) struct Rows<'py> {
+pub(crate) struct RowArguments<'py> {
     /// A column for each input, then the output.
     columns: Vec<PyReadonlyArray1<'py, f64>>,
     weights: Option<PyReadonlyArray1<'py, f64>>,
@@ -26,7 +26,7 @@ pub(crate) struct Rows<'py> {
     pub(crate) skip_bad_rows: bool,
 }
 
-impl Rows<'_> {
+impl RowArguments<'_> {
     pub(crate) fn rows(&self) -> Vec<Row> {
         let columns: Vec<_> = self.columns.iter().map(|c| c.as_array()).collect();
         let weights = self.weights.as_ref().map(|weights| weights.as_array());
@@ -43,23 +43,23 @@ impl Rows<'_> {
 }
 
 /// The reason why the work gave no result.
-pub(crate) enum Failed {
+pub(crate) enum DerivationError {
     Refused(Vec<String>),
     /// A message, and help.
     Data(String, Option<String>),
     Findings(Findings),
 }
 
-impl Failed {
-    pub(crate) fn data(error: impl std::fmt::Display) -> Failed {
-        Failed::Data(error.to_string(), None)
+impl DerivationError {
+    pub(crate) fn data(error: impl std::fmt::Display) -> DerivationError {
+        DerivationError::Data(error.to_string(), None)
     }
 
     pub(crate) fn raise(self, py: Python<'_>) -> PyErr {
         match self {
-            Failed::Data(message, help) => data_error(message, help),
-            Failed::Findings(findings) => rule_set_error(py, &findings, "<model>", ""),
-            Failed::Refused(refused) => {
+            DerivationError::Data(message, help) => data_error(message, help),
+            DerivationError::Findings(findings) => rule_set_error(py, &findings, "<model>", ""),
+            DerivationError::Refused(refused) => {
                 let plural = if refused.len() == 1 { "" } else { "s" };
                 let mut message = format!("{} row{plural} cannot be used", refused.len());
                 for row in refused.iter().take(SHOWN) {
@@ -76,8 +76,12 @@ impl Failed {
 }
 
 /// The text of a rule set derived from another one, with the step that created it.
-pub(crate) fn with_step(begun_with: &str, model: &Model, step: Step) -> Result<String, Failed> {
-    provenance::rule_set(begun_with, model.clone(), step).map_err(Failed::Findings)
+pub(crate) fn with_step(
+    begun_with: &str,
+    model: &Model,
+    step: ProvenanceStep,
+) -> Result<String, DerivationError> {
+    provenance::rule_set(begun_with, model.clone(), step).map_err(DerivationError::Findings)
 }
 
 /// Returns the choice with the given name.

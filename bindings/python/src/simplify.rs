@@ -5,7 +5,7 @@ use fuzzy::{Model, yaml};
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 
-use crate::{rows::Failed, rule_set::RuleSet, threads::interruptible};
+use crate::{rows::DerivationError, rule_set::RuleSet, threads::interruptible};
 
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
@@ -15,9 +15,9 @@ pub(crate) struct SimplifyOptions {
     seed: u64,
 }
 
-/// The result inside `flagred.types.Simplified`.
+/// The result inside `flagred.types.SimplifyResult`.
 #[derive(IntoPyObject)]
-pub(crate) struct Simplified {
+pub(crate) struct SimplifyResult {
     model: String,
     rules: Vec<Vec<usize>>,
     dropped: Vec<usize>,
@@ -27,11 +27,11 @@ pub(crate) struct Simplified {
     difference: Option<(String, f64, f64, Vec<f64>)>,
 }
 
-impl From<SimplifyError> for Failed {
-    fn from(error: SimplifyError) -> Failed {
+impl From<SimplifyError> for DerivationError {
+    fn from(error: SimplifyError) -> DerivationError {
         match error {
-            SimplifyError::Compile(findings) => Failed::Findings(findings),
-            error => Failed::data(error),
+            SimplifyError::Compile(findings) => DerivationError::Findings(findings),
+            error => DerivationError::data(error),
         }
     }
 }
@@ -44,7 +44,7 @@ pub(crate) fn _simplify(
     rule_set: &RuleSet,
     columns: Vec<PyReadonlyArray1<'_, f64>>,
     options: SimplifyOptions,
-) -> PyResult<Simplified> {
+) -> PyResult<SimplifyResult> {
     rule_set.compile(py)?;
     let model = rule_set.model(Model::clone);
     let columns = columns.iter().map(|column| column.as_array().to_vec());
@@ -54,9 +54,9 @@ pub(crate) fn _simplify(
     settings.rows_only = options.rows_only;
     settings.seed = options.seed;
     let found = interruptible(py, move || simplify(&model, &columns, &settings))?;
-    let found = found.map_err(|error| Failed::from(error).raise(py))?;
+    let found = found.map_err(|error| DerivationError::from(error).raise(py))?;
     let numbers = |rules: Vec<usize>| rules.into_iter().map(|rule| rule + 1).collect();
-    Ok(Simplified {
+    Ok(SimplifyResult {
         model: yaml::to_string(&found.model),
         rules: found.rules.into_iter().map(numbers).collect(),
         dropped: numbers(found.dropped),

@@ -9,14 +9,14 @@ use fuzzy::{
 };
 use pyo3::prelude::*;
 
-use crate::{compiled::Compiled, errors::rule_set_error};
+use crate::{compiled::CompiledRuleSet, errors::rule_set_error};
 
 /// A rule set as it was read; an edit creates another source.
 pub(crate) struct Source {
     pub(crate) file: String,
     pub(crate) text: String,
     pub(crate) document: Document,
-    compiled: OnceLock<Result<Arc<Compiled>, Findings>>,
+    compiled: OnceLock<Result<Arc<CompiledRuleSet>, Findings>>,
 }
 
 impl Source {
@@ -38,16 +38,16 @@ impl Source {
     }
 
     /// The compiled rule set, or its errors.
-    pub(crate) fn compile(&self, py: Python<'_>) -> Result<&Arc<Compiled>, &Findings> {
+    pub(crate) fn compile(&self, py: Python<'_>) -> Result<&Arc<CompiledRuleSet>, &Findings> {
         let compile = || {
             let engine = self.document.compile(&self.text)?;
-            Ok(Arc::new(Compiled::new(py, engine)))
+            Ok(Arc::new(CompiledRuleSet::new(py, engine)))
         };
         self.compiled.get_or_init(compile).as_ref()
     }
 
     /// The compiled rule set.
-    pub(crate) fn compiled(&self, py: Python<'_>) -> PyResult<&Arc<Compiled>> {
+    pub(crate) fn compiled(&self, py: Python<'_>) -> PyResult<&Arc<CompiledRuleSet>> {
         let drawn = |findings| rule_set_error(py, findings, &self.file, &self.text);
         self.compile(py).map_err(drawn)
     }

@@ -13,12 +13,12 @@ use flagred_tuning::{Data, Loss, Settings, TuneError, cross_validate};
 use fuzzy::{
     Model,
     drawing::short,
-    model::{LossChange, Step},
+    model::{LossChange, ProvenanceStep},
 };
 use pyo3::prelude::*;
 
 use crate::{
-    rows::{Failed, Rows, choice, claims, with_step},
+    rows::{DerivationError, RowArguments, choice, claims, with_step},
     rule_set::RuleSet,
     threads::{count, pool, stoppable},
 };
@@ -41,9 +41,9 @@ pub(crate) struct TuneOptions {
     folds: Option<u32>,
 }
 
-/// The result inside `flagred.types.Tuned`.
+/// The result inside `flagred.types.TuneResult`.
 #[derive(IntoPyObject)]
-pub(crate) struct Tuned {
+pub(crate) struct TuneResult {
     model: String,
     rows: usize,
     refused: Vec<String>,
@@ -64,11 +64,11 @@ struct Validation {
     gain: (f64, f64, f64),
 }
 
-impl From<TuneError> for Failed {
-    fn from(error: TuneError) -> Failed {
+impl From<TuneError> for DerivationError {
+    fn from(error: TuneError) -> DerivationError {
         match error {
-            TuneError::Compile(findings) => Failed::Findings(findings),
-            error => Failed::data(error),
+            TuneError::Compile(findings) => DerivationError::Findings(findings),
+            error => DerivationError::data(error),
         }
     }
 }
@@ -102,10 +102,10 @@ impl TuneOptions {
 pub(crate) fn _tune(
     py: Python<'_>,
     rule_set: &RuleSet,
-    rows: Rows<'_>,
+    rows: RowArguments<'_>,
     options: TuneOptions,
     #[pyo3(from_py_with = count)] threads: Option<usize>,
-) -> PyResult<(Tuned, bool)> {
+) -> PyResult<(TuneResult, bool)> {
     rule_set.compile(py)?;
     let settings = options.settings()?;
     let (model, text) = (rule_set.model(Model::clone), rule_set.text());
@@ -136,10 +136,10 @@ fn tune_numbers(
     settings: &Settings,
     folds: Option<u32>,
     stop: &AtomicBool,
-) -> Result<Tuned, Failed> {
+) -> Result<TuneResult, DerivationError> {
     let (data, refused) = data(model, all, settings.loss);
     if !refused.is_empty() && !skip_bad_rows {
-        return Err(Failed::Refused(refused));
+        return Err(DerivationError::Refused(refused));
     }
     let flow = || match stop.load(Ordering::Relaxed) {
         true => ControlFlow::Break(()),
@@ -160,11 +160,11 @@ fn tune_numbers(
         let folds = validation.folds;
         format!("cross-validation in {folds} folds: {before} before, {after} after")
     });
-    let moved = |one: &flagred_tuning::Moved| {
+    let moved = |one: &flagred_tuning::ChangedNumber| {
         let [before, after] = [one.before, one.after].map(short);
         format!("{} {} from {before} to {after}", one.of, one.name)
     };
-    let step = Step {
+    let step = ProvenanceStep {
         command: "flagred.tune".into(),
         rows: Some(data.len() as u64),
         seed: Some(settings.seed),
@@ -175,11 +175,11 @@ fn tune_numbers(
         }),
         moved: tuned.moved.iter().map(moved).collect(),
         note: left_out,
-        ..Step::default()
+        ..ProvenanceStep::default()
     };
     let interval = |figure: flagred_tuning::Interval| (figure.value, figure.low, figure.high);
     let moved = tuned.moved.into_iter();
-    Ok(Tuned {
+    Ok(TuneResult {
         model: with_step(text, &tuned.model, step)?,
         rows: data.len(),
         refused,

@@ -4,7 +4,6 @@ import copy
 import math
 import os
 import pickle
-import pydoc
 import shutil
 import subprocess
 import sys
@@ -17,7 +16,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import flagred
-import flagred.learning
 
 
 def test_built_in_rule_sets_are_loaded_by_their_names():
@@ -473,10 +471,9 @@ def test_surface(tip):
         tip.surface(figure.add_subplot())
 
 
-def test_help_fits_on_ten_screens_and_modules_describe_the_rest():
-    assert len(pydoc.plain(pydoc.render_doc(flagred)).splitlines()) <= 10 * 62
-    described = {*flagred.__all__, *flagred.learning.__all__, *flagred.errors.__all__, *flagred.evaluation.__all__}
-    assert {name for name in vars(flagred) if name[0].isupper() or callable(getattr(flagred, name))} <= described | {"Profile"}
+def test_help_lists_the_main_names_and_types_the_rest():
+    assert len(flagred.__all__) <= 22
+    assert not {"Cause", "Peak", "Share", "IdentifyStep"} & set(flagred.__all__)
     for name in flagred.types.__all__:
         assert isinstance(getattr(flagred.types, name), type)
 

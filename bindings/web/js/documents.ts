@@ -202,7 +202,7 @@ export interface Followed {
 export type Format = string;
 
 /** Counts of the data beyond the limits of what is kept. No real flight reaches a limit; damaged and malicious logs may. */
-export interface LeftOut {
+export interface LeftOutCounts {
   /** Texts after the first 10,000. */
   texts: number;
   /** Changes of the flight mode after the first 10,000. */
@@ -369,7 +369,7 @@ export interface Report {
   /** The first reason why bytes were skipped or a message was rejected. */
   reason: string | null;
   /** The data beyond the limits of what is kept. */
-  left_out: LeftOut;
+  left_out: LeftOutCounts;
 }
 
 /** The contribution of a rule to an output. */

@@ -1,7 +1,7 @@
 //! Results about a rule set, as JSON documents for programs.
 
 use flagred::check::Alone;
-use fuzzy::{check, diagnostic::Diagnostic, engine, model::Step};
+use fuzzy::{check, diagnostic::Diagnostic, engine, model::ProvenanceStep};
 use serde::Serialize;
 
 use crate::Examined;
@@ -25,13 +25,13 @@ pub struct Checked<'a> {
     #[cfg_attr(feature = "schema", schemars(with = "str"))]
     profile: Option<&'a str>,
     /// The commands that created the rule set; absent if it has no provenance.
-    #[serde(skip_serializing_if = "<[Step]>::is_empty")]
-    provenance: &'a [Step],
+    #[serde(skip_serializing_if = "<[ProvenanceStep]>::is_empty")]
+    provenance: &'a [ProvenanceStep],
     /// The findings of the text, followed by those of the analysis.
     findings: &'a [Diagnostic],
     /// The findings that the author accepts; absent if the author accepts none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    accepted: Vec<check::Accepted>,
+    accepted: Vec<check::AcceptedFindings>,
     /// Regions, conflicts, reach and monotonicity in numbers; null if the rule set has errors, and for a profile.
     report: Option<&'a check::Report>,
     /// The highest risk that each input of a profile causes while all others are calm; absent for a rule set.

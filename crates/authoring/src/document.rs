@@ -11,7 +11,7 @@ use flagred::{
 use fuzzy::{
     Model, Source, check,
     diagnostic::{Diagnostic, Findings},
-    format::{self, Partial},
+    format::{self, PartialModel},
 };
 
 use crate::provenance;
@@ -21,7 +21,7 @@ use crate::provenance;
 pub struct Document {
     source: Source,
     /// The rule set as far as it can be read; for a profile, the rule set that it names.
-    partial: Option<Partial>,
+    partial: Option<PartialModel>,
     profile: Option<OpenProfile>,
     /// A profile compiled with its rule set, and the findings about both.
     fitted: OnceCell<(Findings, Option<Estimator>)>,
@@ -119,7 +119,7 @@ impl Document {
     }
 
     /// The rule set as far as it can be read, with its spans; `None` for a profile.
-    pub(crate) fn rules(&self) -> Option<&Partial> {
+    pub(crate) fn rules(&self) -> Option<&PartialModel> {
         self.partial.as_ref().filter(|_| self.profile.is_none())
     }
 }
@@ -134,7 +134,7 @@ impl OpenProfile {
     }
 }
 
-pub(crate) fn partial(source: &Source) -> Option<Partial> {
+pub(crate) fn partial(source: &Source) -> Option<PartialModel> {
     format::read_partly(source.tree().ok()?)
 }
 
@@ -149,7 +149,7 @@ pub struct Examined<'s> {
 
 impl Examined<'_> {
     /// The findings that the author accepts.
-    pub fn accepted(&self) -> Vec<check::Accepted> {
+    pub fn accepted(&self) -> Vec<check::AcceptedFindings> {
         let of = |(document, report): &(&format::Document, check::Report)| {
             report.accepted(&document.model)
         };

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use fuzzy::{
     Source,
-    format::Partial,
+    format::PartialModel,
     model::{Term, Variable},
     rule::{self, Name},
 };
@@ -30,7 +30,7 @@ struct Defined<'r> {
 }
 
 /// The variables, inputs first.
-fn variables(rules: &Partial) -> Vec<Defined<'_>> {
+fn variables(rules: &PartialModel) -> Vec<Defined<'_>> {
     let inputs = rules.model.inputs.iter().zip(&rules.spans.inputs);
     let outputs = rules.model.outputs.iter().map(|output| &output.variable);
     inputs
@@ -47,7 +47,7 @@ fn variables(rules: &Partial) -> Vec<Defined<'_>> {
 }
 
 /// Every name in the text, with its meaning.
-fn all(rules: &Partial) -> Vec<(Range<usize>, Meaning)> {
+fn all(rules: &PartialModel) -> Vec<(Range<usize>, Meaning)> {
     let variables = variables(rules);
     let mut found = Vec::new();
     for (v, defined) in variables.iter().enumerate() {
@@ -96,7 +96,7 @@ fn all(rules: &Partial) -> Vec<(Range<usize>, Meaning)> {
     found
 }
 
-fn at(document: &Document, offset: usize) -> Option<(&Partial, Range<usize>, Meaning)> {
+fn at(document: &Document, offset: usize) -> Option<(&PartialModel, Range<usize>, Meaning)> {
     let rules = document.rules()?;
     let names = all(rules).into_iter();
     let (span, meaning) = names
@@ -215,7 +215,7 @@ pub fn rename(document: &Document, offset: usize, new: &str) -> Result<Vec<Range
         text: new.to_owned(),
     };
     let edits: Vec<Edit> = spans.iter().map(edit).collect();
-    let meanings = |rules: &Partial| -> Vec<Meaning> {
+    let meanings = |rules: &PartialModel| -> Vec<Meaning> {
         let names = all(rules).into_iter();
         names.map(|(_, meaning)| meaning).collect()
     };

@@ -5,7 +5,7 @@ use fuzzy::{
     diagnostic::{Diagnostic, Findings},
     drawing::short,
     format::Document,
-    model::Step,
+    model::ProvenanceStep,
 };
 use sha2::{Digest as _, Sha256};
 
@@ -17,8 +17,12 @@ use crate::{Edit, edited, numbers, rewrite::head};
 ///
 /// # Errors
 /// If the text would not be read back as this rule set, for example because of a number that is not finite.
-pub fn rule_set(begun_with: &str, mut model: Model, step: Step) -> Result<String, Findings> {
-    let step = Step {
+pub fn rule_set(
+    begun_with: &str,
+    mut model: Model,
+    step: ProvenanceStep,
+) -> Result<String, Findings> {
+    let step = ProvenanceStep {
         result: Some(fingerprint(&model)),
         ..step
     };
@@ -101,7 +105,7 @@ fn end_of_list(text: &str, key_end: usize) -> Option<(usize, &str)> {
 }
 
 /// A step on one line: `flagred tune: 61 rows of rows.csv, RMS error 10.1 -> 9.2`.
-pub fn words(step: &Step) -> String {
+pub fn words(step: &ProvenanceStep) -> String {
     let mut parts = Vec::new();
     let files: Vec<&str> = step.data.iter().map(|data| data.file.as_str()).collect();
     match (step.rows, files.is_empty()) {
@@ -186,11 +190,11 @@ rules:
 - IF heat IS hot THEN speed IS fast
 ";
 
-    fn step(note: &str) -> Step {
-        Step {
+    fn step(note: &str) -> ProvenanceStep {
+        ProvenanceStep {
             command: "flagred tune".into(),
             note: Some(note.into()),
-            ..Step::default()
+            ..ProvenanceStep::default()
         }
     }
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use fuzzy::{
     Source,
-    format::Partial,
+    format::PartialModel,
     model::{Defuzzifier, MembershipFunction, Term, Variable},
     tree::{Node, Value},
 };
@@ -350,7 +350,7 @@ struct Outline {
 }
 
 impl Outline {
-    fn new(rules: &Partial) -> Outline {
+    fn new(rules: &PartialModel) -> Outline {
         let named = |variable: &Variable| {
             let terms = variable.terms.iter().map(|term| term.name.clone());
             (variable.name.clone(), terms.collect())
@@ -381,7 +381,7 @@ impl Outline {
 /// Returns the edits if the edited text has only the intended change.
 fn verified(
     document: &Document,
-    rules: &Partial,
+    rules: &PartialModel,
     edits: Vec<Edit>,
     change: Change,
 ) -> Result<Vec<Edit>, String> {
@@ -403,7 +403,7 @@ fn verified(
     }
 }
 
-fn readable(document: &Document) -> Result<&Partial, String> {
+fn readable(document: &Document) -> Result<&PartialModel, String> {
     let rules = document.rules().ok_or("the rule set cannot be read")?;
     match rules.names_unread {
         true => Err("a rule or a term cannot be read; correct it first".into()),
@@ -415,7 +415,7 @@ fn tree(document: &Document) -> Result<&Node, String> {
     document.source().tree().map_err(|_| UNREADABLE.to_owned())
 }
 
-fn variables(rules: &Partial) -> impl Iterator<Item = &Variable> {
+fn variables(rules: &PartialModel) -> impl Iterator<Item = &Variable> {
     let outputs = rules.model.outputs.iter().map(|output| &output.variable);
     rules.model.inputs.iter().chain(outputs)
 }
@@ -435,7 +435,7 @@ fn is_singleton(term: &Term) -> bool {
 }
 
 /// Refuses a variable or term that a rule uses.
-fn unused(rules: &Partial, variable: &str, term: Option<&str>) -> Result<(), String> {
+fn unused(rules: &PartialModel, variable: &str, term: Option<&str>) -> Result<(), String> {
     let mut users = Vec::new();
     for (index, rule) in rules.model.rules.iter().enumerate() {
         let mut is_used = false;
@@ -477,7 +477,11 @@ fn key_end(node: &Node, key: &str) -> Option<usize> {
     pair.map(|(name, _)| name.span.end + 1)
 }
 
-fn variable_node<'d>(document: &'d Document, rules: &Partial, variable: usize) -> Option<&'d Node> {
+fn variable_node<'d>(
+    document: &'d Document,
+    rules: &PartialModel,
+    variable: usize,
+) -> Option<&'d Node> {
     let tree = document.source().tree().ok()?;
     let inputs = rules.model.inputs.len();
     let (all, index) = match variable.checked_sub(inputs) {

@@ -41,17 +41,17 @@ pub(crate) struct Arguments {
     #[arg(long, conflicts_with = "format")]
     json: bool,
     #[command(flatten)]
-    claims: rows::Claims,
+    claims: rows::OutputClaims,
     /// Warn where no rule fires with at least this strength
     #[arg(long, value_name = "DEGREE", default_value_t = 0.5, value_parser = numbers::degree_above_0)]
     coverage: f64,
     /// Also exit with 1 for findings of this severity [default: only for errors]
     #[arg(long, value_name = "SEVERITY")]
-    deny: Option<Deny>,
+    deny: Option<DenyLevel>,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
-enum Deny {
+enum DenyLevel {
     /// Warnings
     Warnings,
     /// Warnings and notes
@@ -61,8 +61,8 @@ enum Deny {
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let worst_allowed = match arguments.deny {
         None => Severity::Warning,
-        Some(Deny::Warnings) => Severity::Note,
-        Some(Deny::Notes) => return check_all(arguments, None),
+        Some(DenyLevel::Warnings) => Severity::Note,
+        Some(DenyLevel::Notes) => return check_all(arguments, None),
     };
     check_all(arguments, Some(worst_allowed))
 }

@@ -6,7 +6,7 @@ use std::{
     path::Path,
 };
 
-use flagred_flightlog::Kind;
+use flagred_flightlog::FileKind;
 use flagred_report::diagnostics::{self, Style};
 use fuzzy::{
     diagnostic::{Diagnostic, Findings, nearest},
@@ -123,7 +123,7 @@ fn foreign(bytes: &[u8], shown: &str) -> Option<(&'static str, String)> {
     match flagred_flightlog::kind_of(bytes) {
         // The check of rule sets has findings for these.
         Some(kind) if kind.is_text() => {}
-        Some(kind) if kind != Kind::LOG => {
+        Some(kind) if kind != FileKind::LOG => {
             return Some((kind.name, kind.help.unwrap_or(RULES).replace("FILE", shown)));
         }
         None if !flagred_flightlog::is_text_log(bytes) => {}

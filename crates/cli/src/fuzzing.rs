@@ -25,7 +25,7 @@ use crate::{
         jsonl,
         lines::Words,
         screen::Screen,
-        session::{Out, Session},
+        session::{Session, SessionOutput},
     },
 };
 
@@ -129,7 +129,7 @@ pub struct Watch<'e> {
     session: Session<'e>,
     estimator: &'e Estimator,
     stream: Stream,
-    out: Out,
+    out: SessionOutput,
     words: Words,
     screen: Screen,
     told: WatchOutput,
@@ -148,7 +148,7 @@ pub struct WatchOutput {
 
 /// The vehicle that is followed.
 #[derive(Debug, Clone, Copy)]
-pub struct Followed {
+pub struct VehicleState {
     /// The MAVLink system number of the vehicle.
     pub system: u8,
     /// Whether the vehicle or its motor commands are lost.
@@ -164,7 +164,7 @@ impl<'e> Watch<'e> {
             session: Session::new(estimator, Some(Sender::new(191)), false),
             estimator,
             stream: Stream::new(),
-            out: Out::default(),
+            out: SessionOutput::default(),
             words: Words::default(),
             screen: Screen::new("fuzzing".to_owned()),
             told: WatchOutput::default(),
@@ -208,8 +208,8 @@ impl<'e> Watch<'e> {
     }
 
     /// Returns the vehicle that is followed.
-    pub fn followed(&self) -> Option<Followed> {
-        self.session.view().map(|view| Followed {
+    pub fn followed(&self) -> Option<VehicleState> {
+        self.session.view().map(|view| VehicleState {
             system: view.system,
             is_lost: view.link_lost || view.motors_lost,
             t_s: view.latest.map(|update| update.t_s),

@@ -69,7 +69,7 @@ pub(crate) fn divided(group_by: Option<&String>) -> String {
 /// The confusion matrix of the cross-validation.
 #[derive(Serialize, JsonSchema)]
 #[schemars(rename = "Confusion")]
-pub(crate) struct OfClasses {
+pub(crate) struct ConfusionDocument {
     /// The classes: values of the output, ascending.
     classes: Vec<f64>,
     /// For each class, the number of its rows that were predicted as each class.
@@ -78,9 +78,9 @@ pub(crate) struct OfClasses {
     accuracy: f64,
 }
 
-impl From<&Confusion> for OfClasses {
-    fn from(confusion: &Confusion) -> OfClasses {
-        OfClasses {
+impl From<&Confusion> for ConfusionDocument {
+    fn from(confusion: &Confusion) -> ConfusionDocument {
+        ConfusionDocument {
             classes: confusion.classes.clone(),
             rows: confusion.rows.clone(),
             accuracy: confusion.accuracy(),
@@ -91,7 +91,7 @@ impl From<&Confusion> for OfClasses {
 /// A cross-validated figure with its 95 % confidence interval.
 #[derive(Serialize, JsonSchema)]
 #[schemars(rename = "Interval")]
-pub(crate) struct OfInterval {
+pub(crate) struct IntervalDocument {
     /// The figure.
     value: f64,
     /// The lower end of the interval.
@@ -100,9 +100,9 @@ pub(crate) struct OfInterval {
     high: f64,
 }
 
-impl From<&Interval> for OfInterval {
-    fn from(Interval { value, low, high }: &Interval) -> OfInterval {
-        OfInterval {
+impl From<&Interval> for IntervalDocument {
+    fn from(Interval { value, low, high }: &Interval) -> IntervalDocument {
+        IntervalDocument {
             value: *value,
             low: *low,
             high: *high,

@@ -9,14 +9,18 @@ use std::{
 use flagred_authoring::provenance::digits;
 use fuzzy::{
     Model,
-    model::{DataFile, Step},
+    model::{DataFile, ProvenanceStep},
 };
 use sha2::{Digest as _, Sha256};
 
 use crate::failure::Failure;
 
 /// Returns the text of a rule set that a command derived from another one, with the provenance step.
-pub(crate) fn rule_set(begun_with: &str, model: Model, step: Step) -> Result<String, Failure> {
+pub(crate) fn rule_set(
+    begun_with: &str,
+    model: Model,
+    step: ProvenanceStep,
+) -> Result<String, Failure> {
     flagred_authoring::provenance::rule_set(begun_with, model, step).map_err(|findings| {
         let problems = findings.0.into_iter().map(|finding| finding.message);
         Failure::unreadable("the new rule set could not be read back, and nothing was written")

@@ -44,7 +44,7 @@ pub(crate) struct Rewrite {
 
 /// The arguments of a command that derives a rule set from another one and from rows.
 #[derive(clap::Args)]
-pub(crate) struct FromRows {
+pub(crate) struct DerivationArguments {
     #[command(flatten)]
     pub(crate) rewrite: Rewrite,
 
@@ -53,7 +53,7 @@ pub(crate) struct FromRows {
     pub(crate) data: Vec<PathBuf>,
 
     #[command(flatten)]
-    pub(crate) claims: Claims,
+    pub(crate) claims: OutputClaims,
 
     /// The column with the weights of the rows
     #[arg(long, value_name = "COLUMN")]
@@ -73,7 +73,7 @@ pub(crate) struct FromRows {
     clamp: bool,
 }
 
-impl FromRows {
+impl DerivationArguments {
     /// Returns the inputs and the output.
     pub(crate) fn files(&self, command: &str) -> Result<(Files, Output), Failure> {
         let with_output = format!("{command} --output {}", self.rewrite.output.display());
@@ -93,7 +93,7 @@ impl FromRows {
 
 /// Claims about an output.
 #[derive(clap::Args)]
-pub(crate) struct Claims {
+pub(crate) struct OutputClaims {
     /// The output must not fall when this input rises; `INPUT:OUTPUT` for one of several outputs; may be repeated
     #[arg(long, value_name = "INPUT")]
     rising: Vec<String>,
@@ -103,7 +103,7 @@ pub(crate) struct Claims {
     falling: Vec<String>,
 }
 
-impl Claims {
+impl OutputClaims {
     pub(crate) fn is_empty(&self) -> bool {
         self.rising.is_empty() && self.falling.is_empty()
     }
@@ -195,7 +195,7 @@ pub(crate) struct Data {
 }
 
 /// Reads the values of the inputs and of the measured output of a model from all tables.
-pub(crate) fn read(arguments: &FromRows, model: &Model) -> Result<Data, Failure> {
+pub(crate) fn read(arguments: &DerivationArguments, model: &Model) -> Result<Data, Failure> {
     let variables: Vec<&Variable> = model.measured_variables().collect();
     let names: Vec<&str> = variables.iter().map(|v| v.name.as_str()).collect();
     let optional = [&arguments.weight, &arguments.group_by].map(Option::as_deref);

@@ -2,11 +2,11 @@
 
 use std::{io::Write, path::PathBuf};
 
-use flagred_tuning::{Difference, Simplified, SimplifyError, SimplifySettings, simplify};
+use flagred_tuning::{Difference, SimplifyError, SimplifyResult, SimplifySettings, simplify};
 use fuzzy::{
     Model,
     drawing::{short, visible},
-    model::Step,
+    model::ProvenanceStep,
 };
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -79,7 +79,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         };
         Failure::unusable(format!("`{name}`"), &error).help(help)
     })?;
-    let outcome = Outcome {
+    let outcome = SimplifyOutcome {
         arguments,
         model,
         rows: rows.first().map_or(0, Vec::len),
@@ -128,15 +128,15 @@ fn rows(arguments: &Arguments, model: &Model) -> Result<(Vec<Vec<f64>>, Vec<Stri
     Ok(((0..names.len()).map(column).collect(), refused))
 }
 
-struct Outcome<'a> {
+struct SimplifyOutcome<'a> {
     arguments: &'a Arguments,
     model: &'a Model,
     rows: usize,
     refused: Vec<String>,
-    simplified: Simplified,
+    simplified: SimplifyResult,
 }
 
-impl Outcome<'_> {
+impl SimplifyOutcome<'_> {
     /// The allowed difference, as text.
     fn allowed(&self) -> String {
         match self.arguments.tolerance {
@@ -157,7 +157,7 @@ impl Outcome<'_> {
     /// The rule set with a provenance step for this command.
     fn rule_set(&self, model_text: &str) -> Result<String, Failure> {
         let after = self.simplified.model.clone();
-        let step = Step {
+        let step = ProvenanceStep {
             command: "flagred simplify".into(),
             data: provenance::data(&self.arguments.data)?,
             rows: (self.rows > 0).then_some(self.rows as u64),
@@ -168,7 +168,7 @@ impl Outcome<'_> {
                 self.allowed(),
                 self.points()
             )),
-            ..Step::default()
+            ..ProvenanceStep::default()
         };
         provenance::rule_set(model_text, after, step)
     }
@@ -241,9 +241,9 @@ impl Outcome<'_> {
     }
 
     /// The names and values of the inputs at a difference.
-    fn named<'a>(&'a self, difference: &'a Difference) -> impl Iterator<Item = OfInput<'a>> {
+    fn named<'a>(&'a self, difference: &'a Difference) -> impl Iterator<Item = InputDocument<'a>> {
         let inputs = self.model.inputs.iter().zip(&difference.inputs);
-        inputs.map(|(input, value)| OfInput {
+        inputs.map(|(input, value)| InputDocument {
             input: &input.name,
             value: *value,
         })
@@ -260,7 +260,7 @@ impl Outcome<'_> {
                 after: simplified.model.rules.len(),
                 dropped: simplified.dropped.iter().map(|rule| rule + 1).collect(),
                 list: rules
-                    .map(|(rule, of)| OfRule {
+                    .map(|(rule, of)| RuleDocument {
                         rule: rule.rule.to_string(),
                         of: of.iter().map(|rule| rule + 1).collect(),
                     })
@@ -281,7 +281,7 @@ impl Outcome<'_> {
             difference: simplified
                 .difference
                 .as_ref()
-                .map(|difference| OfDifference {
+                .map(|difference| DifferenceDocument {
                     output: &difference.output,
                     size: size(difference),
                     before: difference.before,
@@ -335,7 +335,7 @@ pub(crate) struct Document<'a> {
     /// The allowed difference of an output; null means 1e-12 of its range.
     tolerance: Option<f64>,
     /// The largest difference; null if the outputs are equal.
-    difference: Option<OfDifference<'a>>,
+    difference: Option<DifferenceDocument<'a>>,
 }
 
 #[derive(Serialize, JsonSchema)]
@@ -348,11 +348,11 @@ struct Rules {
     #[schemars(inner(range(min = 1)))]
     dropped: Vec<usize>,
     /// The rules of the simplified rule set.
-    list: Vec<OfRule>,
+    list: Vec<RuleDocument>,
 }
 
 #[derive(Serialize, JsonSchema)]
-struct OfRule {
+struct RuleDocument {
     /// The text of the rule.
     rule: String,
     /// The numbers in the original rule set of the rules that it replaces.
@@ -381,7 +381,7 @@ struct Points<'a> {
 }
 
 #[derive(Serialize, JsonSchema)]
-struct OfDifference<'a> {
+struct DifferenceDocument<'a> {
     /// The output.
     output: &'a str,
     /// The size of the difference.
@@ -391,11 +391,11 @@ struct OfDifference<'a> {
     /// The value after.
     after: f64,
     /// The values of the inputs at this difference.
-    inputs: Vec<OfInput<'a>>,
+    inputs: Vec<InputDocument<'a>>,
 }
 
 #[derive(Serialize, JsonSchema)]
-struct OfInput<'a> {
+struct InputDocument<'a> {
     /// The input.
     input: &'a str,
     /// The value of this input.

@@ -29,13 +29,13 @@ const LONGEST_ROW: usize = 1_000_000;
 const MOST_CELLS: usize = 20_000_000;
 
 /// A source with a limit on the length of each row, since a single row could exhaust memory.
-struct Bounded {
+struct BoundedReader {
     source: Box<dyn Read + Send>,
     /// Remaining bytes for the current row.
     left: Arc<AtomicUsize>,
 }
 
-impl Read for Bounded {
+impl Read for BoundedReader {
     fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
         let left = self.left.load(Ordering::Relaxed);
         if left == 0 {
@@ -50,9 +50,9 @@ impl Read for Bounded {
 }
 
 /// A table whose comment lines above the header are replaced by empty lines, so that line numbers stay right.
-type Uncommented = io::Chain<Cursor<Vec<u8>>, BufReader<Bounded>>;
+type UncommentedReader = io::Chain<Cursor<Vec<u8>>, BufReader<BoundedReader>>;
 
-fn uncommented(mut source: BufReader<Bounded>) -> io::Result<Uncommented> {
+fn uncommented(mut source: BufReader<BoundedReader>) -> io::Result<UncommentedReader> {
     let mut empty_lines = Vec::new();
     let mut line = Vec::new();
     while matches!(
@@ -68,7 +68,7 @@ fn uncommented(mut source: BufReader<Bounded>) -> io::Result<Uncommented> {
 
 /// Reads the rows of a table.
 pub(crate) struct Reader {
-    csv: csv::Reader<Uncommented>,
+    csv: csv::Reader<UncommentedReader>,
     left: Arc<AtomicUsize>,
 }
 
@@ -209,7 +209,7 @@ pub(crate) fn open(path: &Path, delimiter: u8) -> Result<(Header, Reader), Failu
         Box::new(File::open(path).map_err(|error| cannot_read(&file, &error))?)
     };
     let left = Arc::new(AtomicUsize::new(LONGEST_ROW));
-    let mut source = BufReader::new(Bounded {
+    let mut source = BufReader::new(BoundedReader {
         source,
         left: Arc::clone(&left),
     });

@@ -7,7 +7,8 @@ use std::{
 
 use flagred::shipped;
 use flagred_evaluation::{
-    Document, Estimators, Evaluation, LeftOut, Record, Rows, Unusable, files, svg, words,
+    Document, Estimators, Evaluation, FlightError, FlightTable, LeftOutFile, Record, files, svg,
+    words,
 };
 
 use crate::{
@@ -117,7 +118,7 @@ fn flights(arguments: &Arguments, estimators: &Estimators) -> Result<(Evaluation
             match evaluated {
                 Ok(record) => records.push(record),
                 Err(why) => {
-                    left_out.push(LeftOut::new(file.path.display().to_string(), &why));
+                    left_out.push(LeftOutFile::new(file.path.display().to_string(), &why));
                     // A folder may contain other files than flights.
                     if file.is_named {
                         Failure::from(why).report();
@@ -149,7 +150,7 @@ fn rows(path: &Path, estimators: &Estimators) -> Result<Evaluation, Failure> {
         flagred_evaluation::ERROR,
         "`flagred dataset --profile NAME` writes a table with it: critical moments are identified by the attitude error",
     )?;
-    let rows = Rows {
+    let rows = FlightTable {
         columns: table.header.names.iter().map(String::as_str).collect(),
         len: table.len(),
         number: &|row, column| table.number(row, column),
@@ -173,8 +174,8 @@ fn scored<T>(estimators: &Estimators, score: impl FnOnce(&(dyn Fn() + Sync)) -> 
     scored
 }
 
-impl From<Unusable> for Failure {
-    fn from(why: Unusable) -> Failure {
+impl From<FlightError> for Failure {
+    fn from(why: FlightError) -> Failure {
         Failure::unreadable(&why).help_if(why.help())
     }
 }

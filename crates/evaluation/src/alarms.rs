@@ -19,13 +19,13 @@ use crate::{
 /// The alarms of a profile over all flights except the kind [`APART`], and over each kind.
 pub(crate) struct Alarms {
     /// Alarms in calm stretches, and in flights whose error never exceeds [`ORDINARY_DEG`].
-    pub(crate) calm: Needless,
-    pub(crate) ordinary: Needless,
+    pub(crate) calm: NeedlessAlarms,
+    pub(crate) ordinary: NeedlessAlarms,
     /// Upsets found by any alarm, and by FAIL only.
     pub(crate) upsets: Upsets,
     pub(crate) upsets_by_fail: Upsets,
     /// Calm stretches and upsets of each kind.
-    pub(crate) by_kind: Vec<(String, Needless, Upsets)>,
+    pub(crate) by_kind: Vec<(String, NeedlessAlarms, Upsets)>,
 }
 
 impl Alarms {
@@ -36,15 +36,15 @@ impl Alarms {
             let records = || records.iter().filter(|record| record.kind == kind);
             (
                 kind.to_owned(),
-                Needless::of(profile, calm, records()),
-                Upsets::of(profile, |said| &said.alarms, records()),
+                NeedlessAlarms::of(profile, calm, records()),
+                Upsets::of(profile, |result| &result.alarms, records()),
             )
         };
         Alarms {
-            calm: Needless::of(profile, calm, main()),
-            ordinary: Needless::of(profile, ordinary, main()),
-            upsets: Upsets::of(profile, |said| &said.alarms, main()),
-            upsets_by_fail: Upsets::of(profile, |said| &said.fails, main()),
+            calm: NeedlessAlarms::of(profile, calm, main()),
+            ordinary: NeedlessAlarms::of(profile, ordinary, main()),
+            upsets: Upsets::of(profile, |result| &result.alarms, main()),
+            upsets_by_fail: Upsets::of(profile, |result| &result.fails, main()),
             by_kind: kinds(records).into_iter().map(of_kind).collect(),
         }
     }
@@ -84,7 +84,7 @@ pub(crate) struct Figure {
 }
 
 /// The alarms of a profile in times without danger.
-pub(crate) struct Needless {
+pub(crate) struct NeedlessAlarms {
     /// The number of flights with such times and a verdict, and of those without a verdict.
     pub(crate) flights: usize,
     pub(crate) not_assessed: usize,
@@ -102,7 +102,7 @@ pub(crate) struct Needless {
 
 /// The counts of one vehicle.
 #[derive(Default)]
-struct Counted {
+struct VehicleCounts {
     length_s: f64,
     alarms: f64,
     fails: f64,
@@ -118,18 +118,19 @@ fn column(level: Level) -> usize {
     }
 }
 
-impl Needless {
+impl NeedlessAlarms {
     /// Counts the alarms of a profile in these times of flights.
     pub(crate) fn of<'a>(
         profile: usize,
         times: fn(&Record) -> &[Span],
         records: impl Iterator<Item = &'a Record>,
-    ) -> Needless {
+    ) -> NeedlessAlarms {
         let (mut flights, mut not_assessed, mut verdicts) = (0, 0, [0; 3]);
-        let mut vehicles: BTreeMap<&str, Counted> = BTreeMap::new();
+        let mut vehicles: BTreeMap<&str, VehicleCounts> = BTreeMap::new();
         for record in records.filter(|record| !times(record).is_empty()) {
-            let said = record.said.get(profile);
-            let Some((said, verdict)) = said.and_then(|said| Some((said, said.verdict?))) else {
+            let result = record.results.get(profile);
+            let Some((result, verdict)) = result.and_then(|result| Some((result, result.verdict?)))
+            else {
                 not_assessed += 1;
                 continue;
             };
@@ -143,15 +144,15 @@ impl Needless {
                     inside.count() as f64
                 };
                 counted.length_s += time.length_s();
-                counted.alarms += raised(&said.alarms);
-                counted.fails += raised(&said.fails);
-                let on_s = said.alarms.iter().map(|alarm| alarm.shared_s(time));
+                counted.alarms += raised(&result.alarms);
+                counted.fails += raised(&result.fails);
+                let on_s = result.alarms.iter().map(|alarm| alarm.shared_s(time));
                 counted.on_s += on_s.sum::<f64>().max(0.0);
             }
         }
-        let counted: Vec<Counted> = vehicles.into_values().collect();
+        let counted: Vec<VehicleCounts> = vehicles.into_values().collect();
         let figures = |weights: &[u32]| {
-            let sum = |of: fn(&Counted) -> f64| -> f64 {
+            let sum = |of: fn(&VehicleCounts) -> f64| -> f64 {
                 let all = counted.iter().zip(weights);
                 all.map(|(vehicle, weight)| of(vehicle) * f64::from(*weight))
                     .sum()
@@ -172,8 +173,8 @@ impl Needless {
             let interval = intervals.and_then(|intervals| intervals.get(i).copied());
             Some(Figure { value, interval })
         };
-        let count = |of: fn(&Counted) -> f64| counted.iter().map(of).fold(0.0, |a, b| a + b);
-        Needless {
+        let count = |of: fn(&VehicleCounts) -> f64| counted.iter().map(of).fold(0.0, |a, b| a + b);
+        NeedlessAlarms {
             flights,
             not_assessed,
             hours: count(|vehicle| vehicle.length_s) / 3600.0,
@@ -213,10 +214,10 @@ impl Upsets {
         let mut found = Upsets::default();
         let mut leads = Vec::new();
         for record in records {
-            let said = record.said.get(profile);
-            let said = said.filter(|said| said.verdict.is_some());
+            let result = record.results.get(profile);
+            let result = result.filter(|result| result.verdict.is_some());
             for upset in &record.upsets {
-                match said.map(|said| UpsetAlarm::of(upset.t_s, upset.air, alarms(said))) {
+                match result.map(|result| UpsetAlarm::of(upset.t_s, upset.air, alarms(result))) {
                     None => found.not_assessed += 1,
                     Some(UpsetAlarm::Before { lead_s }) => {
                         found.before += 1;
@@ -251,9 +252,9 @@ impl Verdicts {
     pub(crate) fn add(&mut self, record: &Record) {
         self.flights += 1;
         self.hours += record.air_s() / 3600.0;
-        self.counts.resize(record.said.len(), [0; 4]);
-        for (counts, said) in self.counts.iter_mut().zip(&record.said) {
-            counts[said.verdict.map_or(3, column)] += 1;
+        self.counts.resize(record.results.len(), [0; 4]);
+        for (counts, result) in self.counts.iter_mut().zip(&record.results) {
+            counts[result.verdict.map_or(3, column)] += 1;
         }
     }
 }

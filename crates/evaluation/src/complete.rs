@@ -1,7 +1,7 @@
 //! Determines which flights can be used for learning and evaluation, and which part of their time is judged.
 
 use flagred::verdict::VerdictSettings;
-use flagred_flightlog::{ATTITUDE, Flight, Gap, LeftOut, Options};
+use flagred_flightlog::{ATTITUDE, Flight, Gap, LeftOutCounts, Options};
 
 use crate::span::Span;
 
@@ -11,7 +11,7 @@ use crate::span::Span;
 pub enum Incomplete {
     /// The log exceeds the limits of a reader, which left part of it out.
     #[error("the log exceeds the limits of the reader; left out: {0}")]
-    LeftOut(LeftOut),
+    LeftOut(LeftOutCounts),
     /// Required information is missing from the log.
     #[error(transparent)]
     Gap(Gap),

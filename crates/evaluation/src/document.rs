@@ -6,14 +6,14 @@ use flagred::flight::VerdictWord;
 use serde::Serialize;
 
 use crate::{
-    Evaluation, LeftOut,
-    alarms::{Alarms, Figure, Needless, Upsets},
-    announced::{Answer, Warning},
+    Evaluation, LeftOutFile,
+    alarms::{Alarms, Figure, NeedlessAlarms, Upsets},
     bootstrap::Interval,
     flight::{ProfileResult, Record},
     ranking::Band,
     scores::{ProfileScores, Scores},
     span::Span,
+    warning_matches::{EpisodeMatch, Warning},
     warnings::Warnings,
 };
 
@@ -38,7 +38,7 @@ pub struct Document<'a> {
     /// The number of files that are not complete flights.
     left_out: usize,
     /// The files that were left out, with the reasons.
-    left_out_files: &'a [LeftOut],
+    left_out_files: &'a [LeftOutFile],
     /// The profiles, then the predictors without rules.
     estimators: Vec<EstimatorDocument<'a>>,
     /// The flights.
@@ -61,8 +61,8 @@ struct EstimatorDocument<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "ScoresDocument"))]
     onset: Option<ScoresDocument>,
-    by_vehicle: Vec<OfVehicle<'a>>,
-    by_kind: Vec<OfKind<'a, ScoresDocument>>,
+    by_vehicle: Vec<VehicleScoresDocument<'a>>,
+    by_kind: Vec<FlightKindDocument<'a, ScoresDocument>>,
     /// The reliability of a risk in %, by tenths of the scale; null for other scores.
     reliability: Option<Vec<BandDocument>>,
     /// The warnings, only for profiles.
@@ -77,7 +77,7 @@ struct EstimatorDocument<'a> {
 
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-struct OfVehicle<'a> {
+struct VehicleScoresDocument<'a> {
     vehicle: &'a str,
     #[serde(flatten)]
     scores: ScoresDocument,
@@ -85,7 +85,7 @@ struct OfVehicle<'a> {
 
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-struct OfKind<'a, T> {
+struct FlightKindDocument<'a, T> {
     kind: &'a str,
     #[serde(flatten)]
     of: T,
@@ -140,7 +140,7 @@ struct BandDocument {
 struct ProfileWarnings<'a> {
     #[serde(flatten)]
     all: WarningsDocument<'a>,
-    by_kind: Vec<OfKind<'a, WarningsDocument<'a>>>,
+    by_kind: Vec<FlightKindDocument<'a, WarningsDocument<'a>>>,
 }
 
 #[derive(Serialize)]
@@ -158,27 +158,27 @@ struct WarningsDocument<'a> {
 struct AlarmsDocument<'a> {
     /// Alarms in calm stretches: at least 20 s, from 5 s after take-off, 10 s away from any error over 5 degrees and
     /// any tilt over 45 degrees.
-    calm_stretches: NeedlessDocument,
+    calm_stretches: NeedlessAlarmsDocument,
     /// Alarms in ordinary flights: the error, as a root mean square over 1 s, is never above 5 degrees, the tilt is
     /// below 45 degrees, and there is no upset.
-    ordinary_flights: NeedlessDocument,
+    ordinary_flights: NeedlessAlarmsDocument,
     /// The upsets of flights, found by any alarm.
     upsets: UpsetsDocument<'a>,
     /// The upsets of flights, found by FAIL only.
     upsets_by_fail: UpsetsDocument<'a>,
-    by_kind: Vec<OfKind<'a, AlarmsOfKind<'a>>>,
+    by_kind: Vec<FlightKindDocument<'a, AlarmsOfKind<'a>>>,
 }
 
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct AlarmsOfKind<'a> {
-    calm_stretches: NeedlessDocument,
+    calm_stretches: NeedlessAlarmsDocument,
     upsets: UpsetsDocument<'a>,
 }
 
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-struct NeedlessDocument {
+struct NeedlessAlarmsDocument {
     /// The number of flights with such times and a verdict.
     flights: usize,
     /// The number of flights with such times whose verdict is NA.
@@ -241,12 +241,12 @@ struct RecordDocument<'a> {
     /// The number of critical steps.
     critical: usize,
     /// The results of each profile, by its name.
-    profiles: BTreeMap<&'a str, SaidDocument<'a>>,
+    profiles: BTreeMap<&'a str, ProfileResultDocument<'a>>,
 }
 
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-struct SaidDocument<'a> {
+struct ProfileResultDocument<'a> {
     /// The verdict of the profile on the flight.
     verdict: VerdictWord,
     /// Periods of WARN or FAIL.
@@ -317,13 +317,13 @@ impl<'a> EstimatorDocument<'a> {
             quiet: has_times.then(|| scores(&evaluated.quiet)),
             onset: has_times.then(|| scores(&evaluated.onset)),
             by_vehicle: by_vehicle
-                .map(|(vehicle, of)| OfVehicle {
+                .map(|(vehicle, of)| VehicleScoresDocument {
                     vehicle,
                     scores: scores(of),
                 })
                 .collect(),
             by_kind: by_kind
-                .map(|(kind, of)| OfKind {
+                .map(|(kind, of)| FlightKindDocument {
                     kind,
                     of: scores(of),
                 })
@@ -339,7 +339,7 @@ impl<'a> EstimatorDocument<'a> {
                     all: WarningsDocument::new(all),
                     by_kind: by_kind
                         .iter()
-                        .map(|(kind, of)| OfKind {
+                        .map(|(kind, of)| FlightKindDocument {
                             kind,
                             of: WarningsDocument::new(of),
                         })
@@ -402,14 +402,14 @@ impl<'a> AlarmsDocument<'a> {
     fn new(alarms: &'a Alarms) -> Self {
         let by_kind = alarms.by_kind.iter().map(|(kind, calm, upsets)| {
             let of = AlarmsOfKind {
-                calm_stretches: NeedlessDocument::new(calm),
+                calm_stretches: NeedlessAlarmsDocument::new(calm),
                 upsets: UpsetsDocument::new(upsets),
             };
-            OfKind { kind, of }
+            FlightKindDocument { kind, of }
         });
         AlarmsDocument {
-            calm_stretches: NeedlessDocument::new(&alarms.calm),
-            ordinary_flights: NeedlessDocument::new(&alarms.ordinary),
+            calm_stretches: NeedlessAlarmsDocument::new(&alarms.calm),
+            ordinary_flights: NeedlessAlarmsDocument::new(&alarms.ordinary),
             upsets: UpsetsDocument::new(&alarms.upsets),
             upsets_by_fail: UpsetsDocument::new(&alarms.upsets_by_fail),
             by_kind: by_kind.collect(),
@@ -417,12 +417,12 @@ impl<'a> AlarmsDocument<'a> {
     }
 }
 
-impl NeedlessDocument {
-    fn new(of: &Needless) -> Self {
+impl NeedlessAlarmsDocument {
+    fn new(of: &NeedlessAlarms) -> Self {
         let value = |figure: Option<Figure>| figure.map(|figure| figure.value);
         let interval = |figure: Option<Figure>| figure.and_then(|f| f.interval).map(ends);
         let [good, warn, fail] = of.verdicts;
-        NeedlessDocument {
+        NeedlessAlarmsDocument {
             flights: of.flights,
             not_assessed: of.not_assessed,
             hours: of.hours,
@@ -449,7 +449,7 @@ impl<'a> UpsetsDocument<'a> {
 impl<'a> RecordDocument<'a> {
     fn new(record: &'a Record, evaluation: &'a Evaluation) -> Self {
         let names = evaluation.estimators.iter().map(|e| e.name.as_str());
-        let profiles = names.zip(record.said.iter().map(SaidDocument::new));
+        let profiles = names.zip(record.results.iter().map(ProfileResultDocument::new));
         RecordDocument {
             file: &record.file,
             vehicle: record.vehicle.as_deref(),
@@ -465,9 +465,9 @@ impl<'a> RecordDocument<'a> {
     }
 }
 
-impl<'a> SaidDocument<'a> {
-    fn new(said: &'a ProfileResult) -> Self {
-        let episode = |answer: &Answer| EpisodeDocument {
+impl<'a> ProfileResultDocument<'a> {
+    fn new(result: &'a ProfileResult) -> Self {
+        let episode = |answer: &EpisodeMatch| EpisodeDocument {
             episode: answer.episode,
             warned_s: answer.warned_s,
             lead_s: answer.lead_s(),
@@ -476,12 +476,12 @@ impl<'a> SaidDocument<'a> {
             span: warning.span,
             r#false: warning.is_false,
         };
-        SaidDocument {
-            verdict: said.verdict.into(),
-            alarms: &said.alarms,
-            fails: &said.fails,
-            episodes: said.judged.answers.iter().map(episode).collect(),
-            warnings: said.judged.warnings.iter().map(warning).collect(),
+        ProfileResultDocument {
+            verdict: result.verdict.into(),
+            alarms: &result.alarms,
+            fails: &result.fails,
+            episodes: result.matches.episodes.iter().map(episode).collect(),
+            warnings: result.matches.warnings.iter().map(warning).collect(),
         }
     }
 }

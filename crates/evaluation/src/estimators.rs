@@ -6,12 +6,12 @@ use crate::baseline::Baseline;
 
 /// All estimators that are compared: profiles first, then the baselines of [`crate::Baseline::all`].
 pub struct Estimators {
-    pub(crate) profiles: Vec<Named>,
+    pub(crate) profiles: Vec<NamedEstimator>,
     pub(crate) baselines: [Baseline; 9],
 }
 
 /// A profile, and the name under which its results are listed.
-pub(crate) struct Named {
+pub(crate) struct NamedEstimator {
     pub(crate) name: String,
     pub(crate) estimator: Estimator,
 }
@@ -39,7 +39,7 @@ impl Estimators {
             true => otherwise.to_owned(),
             false => own.clone(),
         };
-        self.profiles.push(Named { name, estimator });
+        self.profiles.push(NamedEstimator { name, estimator });
     }
 
     /// The name and description of each estimator.

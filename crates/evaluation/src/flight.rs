@@ -10,7 +10,6 @@ use flagred::{
 use flagred_flightlog::{Attitude, Flight, ReadError};
 
 use crate::{
-    announced::{Judged, judge},
     baseline::BaselineObserver,
     calm::calm_stretches,
     complete::{Incomplete, complete, complete_options, header, judged_by_header, judged_spans},
@@ -18,6 +17,7 @@ use crate::{
     estimators::Estimators,
     span::Span,
     upset::upset_s,
+    warning_matches::{WarningMatches, match_warnings},
 };
 
 /// The distance between steps, in seconds.
@@ -53,9 +53,9 @@ pub struct Record {
     pub(crate) largest_error_deg: Option<f64>,
     pub(crate) largest_tilt_deg: Option<f64>,
     pub(crate) upsets: Vec<Upset>,
-    pub(crate) steps: Vec<Step>,
+    pub(crate) steps: Vec<ScoredTime>,
     /// The results of each profile.
-    pub(crate) said: Vec<ProfileResult>,
+    pub(crate) results: Vec<ProfileResult>,
 }
 
 /// The first upset in a time in the air.
@@ -65,7 +65,7 @@ pub(crate) struct Upset {
 }
 
 /// A time of the flight, with the scores of the estimators at that time.
-pub(crate) struct Step {
+pub(crate) struct ScoredTime {
     pub(crate) t_s: f64,
     pub(crate) is_critical: bool,
     pub(crate) is_quiet: bool,
@@ -83,12 +83,12 @@ pub(crate) struct ProfileResult {
     pub(crate) alarms: Vec<Span>,
     pub(crate) fails: Vec<Span>,
     /// The periods at which a level was on, matched with the episodes.
-    pub(crate) judged: Judged,
+    pub(crate) matches: WarningMatches,
 }
 
 /// The reason why a flight cannot be evaluated.
 #[derive(Debug, thiserror::Error)]
-pub enum Unusable {
+pub enum FlightError {
     /// The file cannot be read, or is not a flight log.
     #[error(transparent)]
     Read(#[from] ReadError),
@@ -110,13 +110,13 @@ pub enum Unusable {
     },
 }
 
-impl Unusable {
+impl FlightError {
     /// Advice on what to do, in addition to the message.
     pub fn help(&self) -> Option<&str> {
         match self {
-            Unusable::Read(error) => error.help(),
-            Unusable::Incomplete { lacks, .. } => lacks.help(),
-            Unusable::Baselines { .. } => None,
+            FlightError::Read(error) => error.help(),
+            FlightError::Incomplete { lacks, .. } => lacks.help(),
+            FlightError::Baselines { .. } => None,
         }
     }
 }
@@ -126,7 +126,11 @@ impl Record {
     ///
     /// # Errors
     /// If the file cannot be read or is not a flight log, and as [`Record::new`].
-    pub fn read(path: &Path, estimators: &Estimators, horizon_s: f64) -> Result<Record, Unusable> {
+    pub fn read(
+        path: &Path,
+        estimators: &Estimators,
+        horizon_s: f64,
+    ) -> Result<Record, FlightError> {
         let flight = flagred_flightlog::open(path, &complete_options(&estimators.signals()))?;
         Record::new(&path.display().to_string(), &flight, estimators, horizon_s)
     }
@@ -140,8 +144,8 @@ impl Record {
         flight: &Flight,
         estimators: &Estimators,
         horizon_s: f64,
-    ) -> Result<Record, Unusable> {
-        complete(flight).map_err(|lacks| Unusable::Incomplete {
+    ) -> Result<Record, FlightError> {
+        complete(flight).map_err(|lacks| FlightError::Incomplete {
             name: name.to_owned(),
             lacks,
         })?;
@@ -169,7 +173,7 @@ impl Record {
             .collect();
         let mut steps = steps(flight, &upsets, &errors, horizon_s);
         let warned =
-            follow(flight, estimators, &mut steps).map_err(|problem| Unusable::Baselines {
+            follow(flight, estimators, &mut steps).map_err(|problem| FlightError::Baselines {
                 name: name.to_owned(),
                 problem,
             })?;
@@ -180,9 +184,9 @@ impl Record {
             .find(|span| span.ends_with_log)
             .map(|span| span.end_s);
         let judged = judged_spans(flight, &VerdictSettings::default());
-        let said = warned.into_iter().map(|(mut said, warnings)| {
-            said.judged = judge(&warnings, errors.episodes(), &judged, lost_s);
-            said
+        let results = warned.into_iter().map(|(mut result, warnings)| {
+            result.matches = match_warnings(&warnings, errors.episodes(), &judged, lost_s);
+            result
         });
         Ok(Record {
             file: name.to_owned(),
@@ -198,7 +202,7 @@ impl Record {
                 .iter()
                 .flat_map(|air| calm_stretches(&errors, &attitudes, *air))
                 .collect(),
-            said: said.collect(),
+            results: results.collect(),
             steps,
             upsets,
             air,
@@ -223,7 +227,12 @@ impl Record {
 ///
 /// The steps are in the judged time of the log's header. If the header has none, they are in the times in the air, from
 /// 2 s after take-off to 1 s before landing, and end at an upset.
-fn steps(flight: &Flight, upsets: &[Upset], errors: &ErrorRecord, horizon_s: f64) -> Vec<Step> {
+fn steps(
+    flight: &Flight,
+    upsets: &[Upset],
+    errors: &ErrorRecord,
+    horizon_s: f64,
+) -> Vec<ScoredTime> {
     let settings = VerdictSettings {
         quiet_after_take_off_s: FIRST_STEP_S,
         ..VerdictSettings::default()
@@ -238,7 +247,7 @@ fn steps(flight: &Flight, upsets: &[Upset], errors: &ErrorRecord, horizon_s: f64
     times
         .filter(|t_s| !is_upset(*t_s))
         .filter_map(|t_s| {
-            Some(Step {
+            Some(ScoredTime {
                 t_s,
                 is_critical: errors.critical_within(t_s, horizon_s)?,
                 is_quiet: errors.is_quiet(t_s, QUIET_S),
@@ -257,7 +266,7 @@ fn step_times(span: &Span) -> impl Iterator<Item = f64> + use<> {
 }
 
 /// The state of a profile during a flight.
-struct Running {
+struct ProfileState {
     /// `None` if a signal that the profile needs is missing from the flight.
     assessor: Option<Assessor>,
     risk_pct: f64,
@@ -271,13 +280,13 @@ struct Running {
 fn follow(
     flight: &Flight,
     estimators: &Estimators,
-    steps: &mut [Step],
+    steps: &mut [ScoredTime],
 ) -> Result<Vec<(ProfileResult, Vec<Span>)>, String> {
     let names = log::carried(flight, &estimators.signals());
-    let mut running: Vec<Running> = estimators
+    let mut running: Vec<ProfileState> = estimators
         .profiles
         .iter()
-        .map(|profile| Running {
+        .map(|profile| ProfileState {
             assessor: Assessor::new(&profile.estimator, log::craft(flight, &names), None).ok(),
             risk_pct: f64::NAN,
             warnings: Vec::new(),
@@ -321,25 +330,25 @@ fn follow(
         .in_air
         .as_ref()
         .map(flagred_flightlog::Intervals::duration_s);
-    let said = running.into_iter().map(|running| {
+    let results = running.into_iter().map(|running| {
         let assessment = running.assessor.map(|mut assessor| {
             if let Some(in_air_s) = in_air_s {
                 assessor.set_in_air_s(in_air_s);
             }
             assessor.finish()
         });
-        let said = assessment.map_or_else(ProfileResult::default, |assessment| ProfileResult {
+        let result = assessment.map_or_else(ProfileResult::default, |assessment| ProfileResult {
             verdict: match assessment.verdict {
                 Verdict::Known(level) => Some(level),
                 Verdict::NotAvailable(_) => None,
             },
             alarms: alarms(&assessment.findings, Level::Warn),
             fails: alarms(&assessment.findings, Level::Fail),
-            judged: Judged::default(),
+            matches: WarningMatches::default(),
         });
-        (said, running.warnings)
+        (result, running.warnings)
     });
-    Ok(said.collect())
+    Ok(results.collect())
 }
 
 /// Returns the periods of the findings whose severity is at least the given level.
@@ -351,7 +360,7 @@ fn alarms(findings: &[Finding], least: Level) -> Vec<Span> {
     }))
 }
 
-fn scores(running: &[Running], baselines: &BaselineObserver<'_>) -> Vec<f64> {
+fn scores(running: &[ProfileState], baselines: &BaselineObserver<'_>) -> Vec<f64> {
     let risks = running.iter().map(|running| running.risk_pct);
     let baselines = baselines.scores();
     risks

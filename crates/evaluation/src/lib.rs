@@ -4,14 +4,13 @@
 //! It is critical if the attitude error, root mean square over a second, exceeds 5 degrees within a horizon after it
 //! ([`ErrorRecord`]). The measures of an estimator are how well it ranks critical steps above the others ([`Ranking`]),
 //! how often steps with a given risk were critical ([`reliability`]), and which episodes its warnings announce
-//! ([`judge`]).
+//! ([`match_warnings`]).
 //!
 //! A [`Record`] is a flight with its steps. An [`Evaluation`] contains the measures over many of them and can be output
 //! as text ([`words`]), as a [`Document`] for programs, as a picture ([`svg`]) and as a [`page`]. [`learning`] measures
 //! the errors of learned rules.
 
 mod alarms;
-mod announced;
 mod attitude;
 mod baseline;
 mod bootstrap;
@@ -33,12 +32,12 @@ mod span;
 pub mod svg;
 mod tables;
 mod upset;
+mod warning_matches;
 mod warnings;
 pub mod words;
 
 use serde::Serialize;
 
-pub use announced::{Answer, Judged, Warning, judge};
 pub use attitude::{risk_pct, rmse_deg};
 pub use baseline::{Baseline, BaselineObserver, PerMotor};
 pub use bootstrap::{Interval, bootstrap};
@@ -50,14 +49,15 @@ pub use critical::ErrorRecord;
 pub use document::Document;
 pub use estimators::Estimators;
 pub use files::{Candidate, files};
-pub use flight::{Record, Unusable};
+pub use flight::{FlightError, Record};
 pub use ranking::{
     Areas, Band, Intervals, Prediction, Ranking, RocPoint, WithinGroups, reliability,
 };
-pub use rows::{ERROR, Rows, cases};
+pub use rows::{ERROR, FlightTable, cases};
 pub use scores::Case;
 pub use span::Span;
 pub use upset::{UpsetAlarm, upset_s};
+pub use warning_matches::{EpisodeMatch, Warning, WarningMatches, match_warnings};
 
 use alarms::Alarms;
 use scores::{APART, ProfileScores};
@@ -66,19 +66,19 @@ use warnings::Warnings;
 /// A file that is not among the evaluated flights, and the reason.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct LeftOut {
+pub struct LeftOutFile {
     /// The name of the file.
     file: String,
     /// The reason why the file was left out.
     reason: String,
 }
 
-impl LeftOut {
+impl LeftOutFile {
     /// Creates an entry for a file; the reason does not repeat its name.
-    pub fn new(file: String, why: &Unusable) -> LeftOut {
+    pub fn new(file: String, why: &FlightError) -> LeftOutFile {
         let reason = why.to_string().replace(&format!("`{file}`"), "");
         let reason = reason.trim_start_matches([' ', ',']).to_owned();
-        LeftOut { file, reason }
+        LeftOutFile { file, reason }
     }
 }
 
@@ -89,7 +89,7 @@ pub struct Evaluation {
     horizon_s: Option<f64>,
     flights: usize,
     critical: usize,
-    left_out: Vec<LeftOut>,
+    left_out: Vec<LeftOutFile>,
     estimators: Vec<ProfileScores>,
     /// The warnings of each profile: over all flights, and by kind.
     warnings: Vec<(Warnings, Vec<(String, Warnings)>)>,
@@ -105,7 +105,7 @@ impl Evaluation {
         estimators: &Estimators,
         horizon_s: f64,
         mut records: Vec<Record>,
-        left_out: Vec<LeftOut>,
+        left_out: Vec<LeftOutFile>,
         done: &(dyn Fn() + Sync),
     ) -> Option<Evaluation> {
         let cases: Vec<Case> = records

@@ -33,7 +33,7 @@ pub struct Prediction {
 #[derive(Debug, Clone)]
 pub struct Ranking {
     /// The predictions, highest score first.
-    places: Vec<Place>,
+    ranked: Vec<RankedPrediction>,
     groups: usize,
 }
 
@@ -57,7 +57,7 @@ impl GroupCount {
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Place {
+struct RankedPrediction {
     group: u32,
     critical: bool,
     /// Whether the next prediction has a lower score.
@@ -113,12 +113,12 @@ impl Ranking {
             .collect();
         kept.sort_by(|a, b| b.score.total_cmp(&a.score));
         let mut numbers = BTreeMap::new();
-        let places = kept
+        let ranked = kept
             .iter()
             .zip(kept.iter().skip(1).map(Some).chain([None]))
             .map(|(p, next)| {
                 let fresh = numbers.len() as u32;
-                Place {
+                RankedPrediction {
                     group: *numbers.entry(p.group).or_insert(fresh),
                     critical: p.critical,
                     ends_tie: next.is_none_or(|next| next.score < p.score),
@@ -126,24 +126,27 @@ impl Ranking {
             })
             .collect();
         Ranking {
-            places,
+            ranked,
             groups: numbers.len(),
         }
     }
 
     /// The number of predictions.
     pub fn len(&self) -> usize {
-        self.places.len()
+        self.ranked.len()
     }
 
     /// Whether there are no predictions.
     pub fn is_empty(&self) -> bool {
-        self.places.is_empty()
+        self.ranked.is_empty()
     }
 
     /// The number of critical predictions.
     pub fn critical(&self) -> usize {
-        self.places.iter().filter(|place| place.critical).count()
+        self.ranked
+            .iter()
+            .filter(|prediction| prediction.critical)
+            .count()
     }
 
     /// The areas under the curves; `None` unless there are both critical and other predictions.
@@ -184,17 +187,17 @@ impl Ranking {
         // Ties are those of all predictions: each group's counts are added when the tie ends.
         let mut counts = vec![GroupCount::default(); self.groups];
         let mut tied = Vec::new();
-        for place in &self.places {
-            if let Some(count) = counts.get_mut(place.group as usize) {
+        for prediction in &self.ranked {
+            if let Some(count) = counts.get_mut(prediction.group as usize) {
                 if count.critical_of_tie + count.others_of_tie == 0.0 {
-                    tied.push(place.group);
+                    tied.push(prediction.group);
                 }
-                match place.critical {
+                match prediction.critical {
                     true => count.critical_of_tie += 1.0,
                     false => count.others_of_tie += 1.0,
                 }
             }
-            if place.ends_tie {
+            if prediction.ends_tie {
                 for group in tied.drain(..) {
                     if let Some(count) = counts.get_mut(group as usize) {
                         count.end_tie();
@@ -227,14 +230,14 @@ impl Ranking {
         let (mut critical, mut others) = (0_u64, 0_u64);
         let (mut critical_of_tie, mut others_of_tie) = (0_u64, 0_u64);
         let (mut pairs, mut precisions) = (0.0, 0.0);
-        for place in &self.places {
-            let weight = weights.get(place.group as usize).copied().unwrap_or(0);
-            if place.critical {
+        for prediction in &self.ranked {
+            let weight = weights.get(prediction.group as usize).copied().unwrap_or(0);
+            if prediction.critical {
                 critical_of_tie += u64::from(weight);
             } else {
                 others_of_tie += u64::from(weight);
             }
-            if place.ends_tie {
+            if prediction.ends_tie {
                 pairs += others_of_tie as f64 * (critical as f64 + critical_of_tie as f64 / 2.0);
                 critical += critical_of_tie;
                 others += others_of_tie;
@@ -261,8 +264,8 @@ impl Ranking {
         }];
         let (mut hits, mut alarms) = (0_usize, 0_usize);
         let mut last = 0.0;
-        for place in &self.places {
-            if place.critical {
+        for prediction in &self.ranked {
+            if prediction.critical {
                 hits += 1;
             } else {
                 alarms += 1;
@@ -273,7 +276,7 @@ impl Ranking {
             };
             let way = point.false_positive_rate + point.true_positive_rate;
             let is_last = hits + alarms == self.len();
-            if place.ends_tie && (is_last || (way - last) * f64::from(steps) >= 1.0) {
+            if prediction.ends_tie && (is_last || (way - last) * f64::from(steps) >= 1.0) {
                 points.push(point);
                 last = way;
             }
@@ -317,11 +320,11 @@ pub fn reliability(predictions: impl IntoIterator<Item = Prediction>) -> [Band; 
         mean_risk_pct: None,
     });
     for prediction in predictions {
-        let place = (prediction.score / 10.0) as usize;
+        let index = (prediction.score / 10.0) as usize;
         if !(0.0..=100.0).contains(&prediction.score) {
             continue;
         }
-        if let Some(band) = bands.get_mut(place.min(9)) {
+        if let Some(band) = bands.get_mut(index.min(9)) {
             band.predictions += 1;
             band.critical += u64::from(prediction.critical);
             let mean = band.mean_risk_pct.unwrap_or(0.0);

@@ -13,7 +13,7 @@ use crate::{
 pub const ERROR: &str = "att_rmse_deg";
 
 /// A table with one row for each flight.
-pub struct Rows<'a, E> {
+pub struct FlightTable<'a, E> {
     /// The names of the columns, in their order.
     pub columns: Vec<&'a str>,
     /// The number of rows.
@@ -24,7 +24,7 @@ pub struct Rows<'a, E> {
     pub text: &'a dyn Fn(usize, usize) -> &'a str,
 }
 
-impl<E> Rows<'_, E> {
+impl<E> FlightTable<'_, E> {
     fn column(&self, name: &str) -> Option<usize> {
         self.columns.iter().position(|column| *column == name)
     }
@@ -47,7 +47,7 @@ enum Column {
 
 impl Column {
     /// Finds a column with one of the names, or columns from which the input can be computed.
-    fn of<E>(table: &Rows<'_, E>, names: &[&str], source: &Source) -> Option<Column> {
+    fn of<E>(table: &FlightTable<'_, E>, names: &[&str], source: &Source) -> Option<Column> {
         let mut own = names.iter().filter_map(|name| table.column(name));
         if let Some(column) = own.next() {
             return Some(Column::Own(column));
@@ -58,7 +58,7 @@ impl Column {
         has_all.then_some(Column::Of(recipe))
     }
 
-    fn value<E>(&self, table: &Rows<'_, E>, row: usize) -> Result<f64, E> {
+    fn value<E>(&self, table: &FlightTable<'_, E>, row: usize) -> Result<f64, E> {
         match self {
             Column::Own(column) => (table.number)(row, *column),
             Column::Of(recipe) => recipe.value(|name| table.named_number(row, name)),
@@ -75,7 +75,7 @@ impl Column {
 /// # Errors
 /// If a cell does not contain the required number.
 pub fn cases<E>(
-    table: &Rows<'_, E>,
+    table: &FlightTable<'_, E>,
     estimators: &Estimators,
 ) -> Result<(Vec<Case>, Vec<String>), E> {
     let crashed = table.column("crashed");

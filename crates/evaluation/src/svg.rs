@@ -1,6 +1,6 @@
 //! The evaluation as a picture: the ROC curve of every estimator, and the reliability of risks.
 
-use fuzzy::drawing::{Colour, Plot, Scale, Series, plots_svg};
+use fuzzy::drawing::{Colour, Plot, PlotLine, Scale, plots_svg};
 
 use crate::{Evaluation, ranking::Band, scores::ProfileScores};
 
@@ -11,20 +11,20 @@ pub fn draw(evaluation: &Evaluation) -> String {
         let known = evaluated.all.areas.map(|_| evaluated.roc.iter());
         let points = known.into_iter().flatten();
         let points = points.map(|p| (p.false_positive_rate, p.true_positive_rate));
-        Series::new(i, name(evaluated), points.collect())
+        PlotLine::new(i, name(evaluated), points.collect())
     });
     let reliability = estimators().map(|(i, evaluated)| {
         let bands = evaluated.reliability.iter().flatten();
-        Series {
+        PlotLine {
             dots: true,
-            ..Series::new(i, name(evaluated), bands.filter_map(point).collect())
+            ..PlotLine::new(i, name(evaluated), bands.filter_map(point).collect())
         }
     });
     let diagonal = |end: f64| {
-        std::iter::once(Series {
+        std::iter::once(PlotLine {
             colour: Colour(0xbb, 0xbb, 0xbb),
             dash: "2 4",
-            ..Series::new(0, "", vec![(0.0, 0.0), (end, end)])
+            ..PlotLine::new(0, "", vec![(0.0, 0.0), (end, end)])
         })
     };
     let (shares, percent) = (Scale::new(0.0, 1.0), Scale::new(0.0, 100.0));

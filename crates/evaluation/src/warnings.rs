@@ -4,9 +4,9 @@ use serde::Serialize;
 
 use crate::{
     alarms::kinds,
-    announced::Judged,
     flight::Record,
     scores::{APART, median},
+    warning_matches::WarningMatches,
 };
 
 /// An episode that starts within this time after another one ended, in seconds, belongs to the same group.
@@ -55,13 +55,13 @@ impl Warnings {
         let mut sum = Warnings::default();
         let (mut leads, mut group_leads, mut answers, mut on_s) = (vec![], vec![], vec![], 0.0);
         for record in records {
-            let Some(said) = record.said.get(profile) else {
+            let Some(result) = record.results.get(profile) else {
                 continue;
             };
-            let Judged {
-                answers: of_flight,
+            let WarningMatches {
+                episodes: of_flight,
                 warnings,
-            } = &said.judged;
+            } = &result.matches;
             sum.flights += 1;
             sum.hours += record.judged_s / 3600.0;
             sum.warnings += warnings.len();

@@ -18,7 +18,7 @@ const MOST_BOOTS: usize = 1000;
 
 /// The treatment of a message, by its timestamp.
 #[derive(Debug, PartialEq)]
-pub(crate) enum Checked {
+pub(crate) enum TimestampDecision {
     /// Accept the message, at this time.
     At(f64),
     /// The time of the message jumps: hold it until the next message confirms or refutes it.
@@ -85,7 +85,7 @@ impl Clock {
         self.last_s.map(|last| last + self.offset_s)
     }
 
-    pub(crate) fn check(&mut self, t_s: f64) -> Checked {
+    pub(crate) fn check(&mut self, t_s: f64) -> TimestampDecision {
         let hint = std::mem::take(&mut self.boot_hint);
         let last_s = self.last_s;
         if let Some(last_s) = last_s {
@@ -93,29 +93,29 @@ impl Clock {
                 self.waiting_s = None;
                 self.boot(last_s);
                 self.last_s = Some(t_s);
-                return Checked::At(t_s + self.offset_s);
+                return TimestampDecision::At(t_s + self.offset_s);
             }
             if self.follows(last_s, t_s) {
                 let t_s = t_s + self.offset_s;
                 return match self.waiting_s.take() {
-                    Some(_) => Checked::Refuted(t_s),
-                    None => Checked::At(t_s),
+                    Some(_) => TimestampDecision::Refuted(t_s),
+                    None => TimestampDecision::At(t_s),
                 };
             }
         }
         match self.waiting_s.replace(t_s) {
-            None => Checked::Wait,
+            None => TimestampDecision::Wait,
             Some(first_s) if is_possible(last_s, t_s) && self.follows(first_s, t_s) => {
                 self.waiting_s = None;
                 self.first_s.get_or_insert(first_s);
                 if let Some(last_s) = last_s.filter(|last_s| first_s - last_s < BOOT_STEP_S) {
                     self.boot(last_s);
                 }
-                Checked::Confirmed(first_s + self.offset_s, t_s + self.offset_s)
+                TimestampDecision::Confirmed(first_s + self.offset_s, t_s + self.offset_s)
             }
             Some(_) => {
                 self.longest_s = (2.0 * self.longest_s).min(SLOWEST_S);
-                Checked::RefutedWait
+                TimestampDecision::RefutedWait
             }
         }
     }
@@ -212,9 +212,9 @@ mod tests {
         let mut kept = Vec::new();
         for &t in times {
             match clock.check(t) {
-                Checked::At(t) | Checked::Refuted(t) => kept.push(t),
-                Checked::Confirmed(a, b) => kept.extend([a, b]),
-                Checked::Wait | Checked::RefutedWait => {}
+                TimestampDecision::At(t) | TimestampDecision::Refuted(t) => kept.push(t),
+                TimestampDecision::Confirmed(a, b) => kept.extend([a, b]),
+                TimestampDecision::Wait | TimestampDecision::RefutedWait => {}
             }
         }
         kept
@@ -264,7 +264,7 @@ mod tests {
         clock.check(6.0);
         clock.check(6.5);
         clock.expect_boot();
-        assert_eq!(clock.check(2.0), Checked::At(8.5));
+        assert_eq!(clock.check(2.0), TimestampDecision::At(8.5));
         assert_eq!(clock.boots_s(), [6.5]);
         assert_eq!(clock.now_s(), Some(8.5));
     }

@@ -2,7 +2,7 @@
 
 use std::io::ErrorKind;
 
-use crate::Kind;
+use crate::FileKind;
 
 /// An error that prevents reading a log. A damaged log is not an error: its undamaged part is read, and its
 /// [`Report`](crate::Report) counts the damage.
@@ -94,7 +94,7 @@ impl ReadError {
             Self::NotRead { .. } => Some(
                 "it cannot be converted to ULog: write a flight CSV (docs/flight-csv.md) of its OUT0 messages, or fly with PX4 1.4 or newer, which logs as ULog (.ulg)",
             ),
-            Self::NotALog { what, .. } => Kind::named(what).and_then(|kind| kind.help).or(Some(
+            Self::NotALog { what, .. } => FileKind::named(what).and_then(|kind| kind.help).or(Some(
                 "flight logs are ArduPilot .bin and .log, PX4 .ulg, MAVLink .tlog and flight CSV, plain or gzipped",
             )),
             Self::Csv { help, .. } => Some(help),

@@ -4,12 +4,12 @@
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct NumericField {
     pub(crate) offset: usize,
-    pub(crate) kind: Kind,
+    pub(crate) kind: NumberType,
 }
 
 /// Types of numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Kind {
+pub(crate) enum NumberType {
     I8,
     U8,
     I16,
@@ -22,7 +22,7 @@ pub(crate) enum Kind {
     F64,
 }
 
-impl Kind {
+impl NumberType {
     /// The size in bytes.
     pub(crate) fn width(self) -> usize {
         match self {
@@ -39,16 +39,16 @@ impl NumericField {
     pub(crate) fn number(self, message: &[u8]) -> Option<f64> {
         let bytes = message.get(self.offset..)?;
         Some(match self.kind {
-            Kind::I8 => f64::from(i8::from_le_bytes(*bytes.first_chunk()?)),
-            Kind::U8 => f64::from(*bytes.first()?),
-            Kind::I16 => f64::from(i16::from_le_bytes(*bytes.first_chunk()?)),
-            Kind::U16 => f64::from(u16::from_le_bytes(*bytes.first_chunk()?)),
-            Kind::I32 => f64::from(i32::from_le_bytes(*bytes.first_chunk()?)),
-            Kind::U32 => f64::from(u32::from_le_bytes(*bytes.first_chunk()?)),
-            Kind::I64 => i64::from_le_bytes(*bytes.first_chunk()?) as f64,
-            Kind::U64 => u64::from_le_bytes(*bytes.first_chunk()?) as f64,
-            Kind::F32 => f64::from(f32::from_le_bytes(*bytes.first_chunk()?)),
-            Kind::F64 => f64::from_le_bytes(*bytes.first_chunk()?),
+            NumberType::I8 => f64::from(i8::from_le_bytes(*bytes.first_chunk()?)),
+            NumberType::U8 => f64::from(*bytes.first()?),
+            NumberType::I16 => f64::from(i16::from_le_bytes(*bytes.first_chunk()?)),
+            NumberType::U16 => f64::from(u16::from_le_bytes(*bytes.first_chunk()?)),
+            NumberType::I32 => f64::from(i32::from_le_bytes(*bytes.first_chunk()?)),
+            NumberType::U32 => f64::from(u32::from_le_bytes(*bytes.first_chunk()?)),
+            NumberType::I64 => i64::from_le_bytes(*bytes.first_chunk()?) as f64,
+            NumberType::U64 => u64::from_le_bytes(*bytes.first_chunk()?) as f64,
+            NumberType::F32 => f64::from(f32::from_le_bytes(*bytes.first_chunk()?)),
+            NumberType::F64 => f64::from_le_bytes(*bytes.first_chunk()?),
         })
     }
 }

@@ -3,7 +3,7 @@
 /// A kind of file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
-pub struct Kind {
+pub struct FileKind {
     /// What the file is, such as `a PDF document`.
     pub name: &'static str,
     /// What to do, if that does not depend on the expected kind.
@@ -94,85 +94,85 @@ const MAT: &str = "a MAT or HDF5 file";
 const MAT_HELP: &str = "in MATLAB, write a fuzzy system by `writeFIS`, a table by `writetable`";
 
 /// Kinds that are recognised without a signature.
-const OTHERS: &[Kind] = &[
-    Kind::LOG,
-    Kind::BINARY,
-    Kind::TEXT,
-    Kind::RULES,
-    Kind::PROFILE,
-    Kind::SEMICOLONS,
-    Kind::TABS,
-    Kind::UTF_16,
+const OTHERS: &[FileKind] = &[
+    FileKind::LOG,
+    FileKind::BINARY,
+    FileKind::TEXT,
+    FileKind::RULES,
+    FileKind::PROFILE,
+    FileKind::SEMICOLONS,
+    FileKind::TABS,
+    FileKind::UTF_16,
 ];
 
-impl Kind {
+impl FileKind {
     /// A flight log.
-    pub const LOG: Kind = Kind {
+    pub const LOG: FileKind = FileKind {
         name: "a flight log",
         help: None,
     };
-    const BINARY: Kind = Kind {
+    const BINARY: FileKind = FileKind {
         name: "an unknown binary file",
         help: None,
     };
-    const TEXT: Kind = Kind {
+    const TEXT: FileKind = FileKind {
         name: "a text file",
         help: Some(
             "a flight CSV begins with the names of its columns, separated by commas: `t_s`, and `pwm1` or `motor1` and so on; a text log of ArduPilot begins with `FMT` lines",
         ),
     };
-    const RULES: Kind = Kind {
+    const RULES: FileKind = FileKind {
         name: "a rule set",
         help: Some("`flagred check` examines a rule set"),
     };
-    const PROFILE: Kind = Kind {
+    const PROFILE: FileKind = FileKind {
         name: "a profile",
         help: Some("`flagred assess --profile PROFILE FLIGHT` assesses a flight with it"),
     };
-    const SEMICOLONS: Kind = Kind {
+    const SEMICOLONS: FileKind = FileKind {
         name: "a table with semicolons between its cells",
         help: Some(COMMAS),
     };
-    const TABS: Kind = Kind {
+    const TABS: FileKind = FileKind {
         name: "a table with tabs between its cells",
         help: Some(COMMAS),
     };
-    const UTF_16: Kind = Kind {
+    const UTF_16: FileKind = FileKind {
         name: "text in UTF-16",
         help: Some("save it as UTF-8"),
     };
 
     /// Text that may be meant for another command.
-    pub(crate) const PLAIN: &[Kind] = &[
-        Kind::TEXT,
-        Kind::RULES,
-        Kind::PROFILE,
-        Kind::SEMICOLONS,
-        Kind::TABS,
+    pub(crate) const PLAIN: &[FileKind] = &[
+        FileKind::TEXT,
+        FileKind::RULES,
+        FileKind::PROFILE,
+        FileKind::SEMICOLONS,
+        FileKind::TABS,
     ];
 
     /// Whether the content is text.
     pub fn is_text(self) -> bool {
-        Kind::PLAIN.contains(&self) || [WEB_PAGE, POINTER].contains(&self.name)
+        FileKind::PLAIN.contains(&self) || [WEB_PAGE, POINTER].contains(&self.name)
     }
 
     /// Returns the kind with the given name.
-    pub(crate) fn named(name: &str) -> Option<Kind> {
+    pub(crate) fn named(name: &str) -> Option<FileKind> {
         let signed = SIGNATURES.iter().map(kind);
         let mut kinds = OTHERS.iter().copied().chain(signed);
         kinds.find(|kind| kind.name == name)
     }
 }
 
-fn kind(&(.., name, help): &(&[u8], &[u8], &'static str, &'static str)) -> Kind {
-    Kind {
+fn kind(&(.., name, help): &(&[u8], &[u8], &'static str, &'static str)) -> FileKind {
+    FileKind {
         name,
         help: Some(help).filter(|help| !help.is_empty()),
     }
 }
 
 /// Returns the kind of a file with a signature.
-pub(crate) fn signed(start: &[u8]) -> Option<Kind> {
+pub(crate) fn signed(start: &[u8]) -> Option<FileKind> {
     let contains =
         |part: &[u8]| part.is_empty() || start.windows(part.len()).any(|bytes| bytes == part);
     let mut signatures = SIGNATURES.iter();
@@ -181,17 +181,17 @@ pub(crate) fn signed(start: &[u8]) -> Option<Kind> {
 }
 
 /// The kind of a file that is not a log and has no signature.
-pub(crate) fn of_rest(start: &[u8]) -> Kind {
+pub(crate) fn of_rest(start: &[u8]) -> FileKind {
     let start = &start[..start.len().min(1024)];
     // A character may be cut off at the end.
     let is_utf8 =
         std::str::from_utf8(start).map_or_else(|error| error.error_len().is_none(), |_| true);
     let is_control = |byte: &u8| *byte < 0x20 && !byte.is_ascii_whitespace();
     if start.starts_with(b"\xff\xfe") || start.starts_with(b"\xfe\xff") {
-        return Kind::UTF_16;
+        return FileKind::UTF_16;
     }
     if !is_utf8 && start.iter().any(is_control) {
-        return Kind::BINARY;
+        return FileKind::BINARY;
     }
     let text = String::from_utf8_lossy(start);
     let starts = |key: &str| text.lines().any(|line| line.starts_with(key));
@@ -199,15 +199,15 @@ pub(crate) fn of_rest(start: &[u8]) -> Kind {
     let separates =
         |sign: char| header.is_some_and(|header| header.contains(sign) && !header.contains(','));
     if starts("fuzzy:") {
-        Kind::RULES
+        FileKind::RULES
     } else if starts("flagred:") {
-        Kind::PROFILE
+        FileKind::PROFILE
     } else if separates(';') {
-        Kind::SEMICOLONS
+        FileKind::SEMICOLONS
     } else if separates('\t') {
-        Kind::TABS
+        FileKind::TABS
     } else {
-        Kind::TEXT
+        FileKind::TEXT
     }
 }
 

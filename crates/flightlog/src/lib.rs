@@ -61,11 +61,11 @@ pub use flight::{Commands, Event, Flight, Format, Motor, Range, Vehicle, Vehicle
 pub use gap::Gap;
 pub use geometry::{Basis, Frame, Geometry, ardupilot_frames};
 pub use interval::{Interval, Intervals};
-pub use kind::Kind;
+pub use kind::FileKind;
 pub use known::{KnownSignal, known_signals};
 pub use parameters::Parameter;
 pub use pulse_range::{PulseRange, PulseRangeError};
 pub use read::{Options, is_text_log, kind_of, open, read};
-pub use report::{LeftOut, Report};
+pub use report::{LeftOutCounts, Report};
 pub use signal::{Hold, Label, Series, Signal};
 pub use statistics::Statistics;

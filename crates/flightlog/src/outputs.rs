@@ -1,7 +1,7 @@
 //! Servo outputs of ArduPilot, before it is known which of them drive motors.
 
 use crate::Commands;
-use crate::signal::{Order, SetBack};
+use crate::signal::{BackstepDetector, Order};
 
 /// The value of an output that was not logged in a row, or is damaged.
 const MISSING: u16 = u16::MAX;
@@ -49,7 +49,7 @@ pub(crate) struct Outputs {
     /// One column for each output, at the index of its number minus 1; it is shorter than `t_s` if the output was not
     /// logged since, and empty if all its values were 0.
     columns: Vec<Vec<u16>>,
-    set_back: SetBack,
+    set_back: BackstepDetector,
 }
 
 impl Outputs {

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::error::{self, UNNAMED, io_error};
 use crate::input::Input;
-use crate::kind::{self, Kind};
+use crate::kind::{self, FileKind};
 use crate::{Commands, Flight, PulseRange, Range, ReadError, csv, dataflash, geometry, tlog, ulog};
 
 /// Options for reading a log.
@@ -167,7 +167,7 @@ enum Content {
     Csv,
     Empty,
     Sdlog2,
-    Other(Kind),
+    Other(FileKind),
 }
 
 /// The label of the only field of sdlog2's time messages.
@@ -175,10 +175,10 @@ const SDLOG2: &[u8] = b"StartTime\0";
 
 /// Returns the kind of a file by its first bytes: a flight log in a binary format, or a file of another kind that is not
 /// text; `None` for text.
-pub fn kind_of(start: &[u8]) -> Option<Kind> {
+pub fn kind_of(start: &[u8]) -> Option<FileKind> {
     match sniff(start) {
-        Content::DataFlash | Content::ULog | Content::Tlog | Content::Sdlog2 => Some(Kind::LOG),
-        Content::Other(kind) if !Kind::PLAIN.contains(&kind) => Some(kind),
+        Content::DataFlash | Content::ULog | Content::Tlog | Content::Sdlog2 => Some(FileKind::LOG),
+        Content::Other(kind) if !FileKind::PLAIN.contains(&kind) => Some(kind),
         Content::Other(_) | Content::DataFlashText | Content::Csv | Content::Empty => None,
     }
 }

@@ -23,9 +23,9 @@ pub struct Report {
     /// The first reason why bytes were skipped or a message was rejected.
     pub reason: Option<String>,
     /// The data beyond the limits of what is kept.
-    pub left_out: LeftOut,
+    pub left_out: LeftOutCounts,
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub(crate) room: Room,
+    pub(crate) stored: StoredCounts,
 }
 
 /// Counts of the data beyond the limits of what is kept. No real flight reaches a limit; damaged and malicious logs
@@ -34,7 +34,7 @@ pub struct Report {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
-pub struct LeftOut {
+pub struct LeftOutCounts {
     /// Texts after the first 10,000.
     pub texts: u64,
     /// Changes of the flight mode after the first 10,000.
@@ -49,14 +49,14 @@ pub struct LeftOut {
     pub messages: u64,
 }
 
-impl LeftOut {
+impl LeftOutCounts {
     /// Whether the whole log was kept.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 }
 
-impl fmt::Display for LeftOut {
+impl fmt::Display for LeftOutCounts {
     /// The omitted data, such as `12 texts and 3 flight modes`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let counts = [
@@ -87,19 +87,19 @@ const MOST_CHANGES: u64 = 10_000;
 
 /// The amounts that are kept so far, for limits that rows and changes share.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Room {
+pub(crate) struct StoredCounts {
     numbers: u64,
     changes: u64,
 }
 
 /// Always equal: the kept amounts depend on the options, but reports must compare equal for any options.
-impl PartialEq for Room {
-    fn eq(&self, _: &Room) -> bool {
+impl PartialEq for StoredCounts {
+    fn eq(&self, _: &StoredCounts) -> bool {
         true
     }
 }
 
-impl Eq for Room {}
+impl Eq for StoredCounts {}
 
 impl Report {
     /// Whether nothing was skipped, rejected or cut off. Data beyond the limits does not count as damage: see
@@ -117,7 +117,7 @@ impl Report {
     /// Counts a row of `numbers` values, with its time; `dropped` means that a row is dropped because its time goes
     /// back.
     pub(crate) fn row(&mut self, numbers: usize, dropped: bool) {
-        self.room.numbers += numbers as u64 + 1;
+        self.stored.numbers += numbers as u64 + 1;
         if dropped {
             self.bad("a time that goes back");
         }
@@ -125,7 +125,7 @@ impl Report {
 
     /// Counts a change of armed or in the air.
     pub(crate) fn change(&mut self) {
-        self.room.changes += 1;
+        self.stored.changes += 1;
     }
 
     /// Appends a repeatedly reported state if it changes.
@@ -139,7 +139,7 @@ impl Report {
 
     /// Counts a message as omitted if the flight has reached a limit, of boots or otherwise; returns whether it has.
     pub(crate) fn leaves_out(&mut self, of_boots: bool) -> bool {
-        let Room { numbers, changes } = self.room;
+        let StoredCounts { numbers, changes } = self.stored;
         let is_full = of_boots || numbers >= MOST_NUMBERS || changes >= MOST_CHANGES;
         self.left_out.messages += u64::from(is_full);
         is_full

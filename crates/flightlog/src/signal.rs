@@ -202,13 +202,13 @@ const MOST_SET_BACK: usize = 1000;
 /// Detects a clock that is set back. The rows that are dropped because of it leave no gap in the times of the other
 /// rows.
 #[derive(Debug, Default)]
-pub(crate) struct SetBack {
+pub(crate) struct BackstepDetector {
     /// The time of the previous row, if it was dropped.
     dropped_s: Option<f64>,
     at_s: Vec<f64>,
 }
 
-impl SetBack {
+impl BackstepDetector {
     /// Processes the order and the time of a row, with the time of the last kept row before it.
     pub(crate) fn see(&mut self, order: Order, t_s: f64, last_s: Option<&f64>) {
         if order != Order::Back {

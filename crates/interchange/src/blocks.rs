@@ -2,7 +2,7 @@
 
 use fuzzy::model::{Activation, Aggregation, Block, Model, Operators, Rule};
 
-use crate::draft::Draft;
+use crate::model_draft::ModelDraft;
 
 /// Sets the blocks from which the rules of a model were read. The settings of a single block become those of the rule
 /// set.
@@ -44,7 +44,7 @@ pub(crate) fn aggregate(model: &mut Model, found: &[Option<Aggregation>]) {
 
 /// Reports a loss if the aggregation of an output with computed values joins rules, because a rule set weights each rule
 /// separately.
-pub(crate) fn joined(draft: &mut Draft<'_>, output: &str, part: &str, help: &str) {
+pub(crate) fn joined(draft: &mut ModelDraft<'_>, output: &str, part: &str, help: &str) {
     let rules = draft.model.rules.iter();
     let consequents = rules.flat_map(|rule| &rule.rule.consequents);
     let mut terms: Vec<&str> = consequents

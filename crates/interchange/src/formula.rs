@@ -2,12 +2,12 @@
 
 use fuzzy::model::{Formula, MembershipFunction};
 
-use crate::{draft::Draft, words::is_name};
+use crate::{model_draft::ModelDraft, words::is_name};
 
 /// Reads a term that is given by a formula, from words that are parts of the text. `own` is the variable that FLL calls
 /// `x`, if the formula is a fuzzy set.
 pub(crate) fn read(
-    draft: &mut Draft<'_>,
+    draft: &mut ModelDraft<'_>,
     words: &[&str],
     own: Option<&str>,
 ) -> Option<MembershipFunction> {
@@ -63,13 +63,13 @@ pub(crate) fn words(text: &str) -> Vec<&str> {
 /// as functions. `own` is written as `x`.
 pub(crate) fn write(formula: &Formula, own: Option<&str>) -> String {
     let number = |value: f64| {
-        Written::whole(match value < 0.0 {
+        FormulaText::whole(match value < 0.0 {
             true => format!("(0 - {})", -value),
             false => value.to_string(),
         })
     };
     let variable = |name: &str| {
-        Written::whole(match own == Some(name) {
+        FormulaText::whole(match own == Some(name) {
             true => "x".to_owned(),
             false => name.to_owned(),
         })
@@ -92,15 +92,15 @@ pub(crate) fn renamed(formula: &Formula, name: impl Fn(&str) -> String) -> Formu
 }
 
 /// A part of a formula, and the precedence of its operator.
-struct Written {
+struct FormulaText {
     text: String,
     binds: u8,
 }
 
-impl Written {
+impl FormulaText {
     /// A part that needs no brackets.
     fn whole(text: String) -> Self {
-        Written { text, binds: 4 }
+        FormulaText { text, binds: 4 }
     }
 
     /// The part as an operand: in brackets if its precedence is lower.
@@ -112,7 +112,7 @@ impl Written {
     }
 }
 
-fn apply(word: &str, mut operands: Vec<Written>) -> Written {
+fn apply(word: &str, mut operands: Vec<FormulaText>) -> FormulaText {
     let binds = match word {
         "+" | "-" => 1,
         "*" | "/" | "%" => 2,
@@ -126,7 +126,7 @@ fn apply(word: &str, mut operands: Vec<Written>) -> Written {
         // Powers are put in brackets on both sides, because not all programs nest them to the right.
         let left = left.within(binds + u8::from(word == "^"));
         let text = format!("{left} {word} {}", right.within(binds + 1));
-        return Written { text, binds };
+        return FormulaText { text, binds };
     }
     let called = match word {
         "<" => "lt",
@@ -138,7 +138,7 @@ fn apply(word: &str, mut operands: Vec<Written>) -> Written {
         _ => word,
     };
     let texts: Vec<String> = operands.into_iter().map(|of| of.text).collect();
-    Written::whole(match (word, texts.as_slice()) {
+    FormulaText::whole(match (word, texts.as_slice()) {
         ("-", [of]) => format!("(0 - ({of}))"),
         ("not", [of]) => format!("eq({of}, 0)"),
         // Every number except 0 is true.

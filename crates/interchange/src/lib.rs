@@ -37,16 +37,16 @@ mod blocks;
 mod comments;
 mod conditions;
 mod crisp;
-mod draft;
 mod fcl;
 mod fis;
 mod fll;
 mod fml;
 mod formula;
+mod model_draft;
 mod names;
-mod paper;
 mod rules;
 mod shapes;
+mod text_draft;
 mod words;
 
 /// A format of rule sets.
@@ -177,7 +177,7 @@ pub fn source(text: impl Into<String>) -> Source {
 /// The result of [`write()`].
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct Written {
+pub struct WriteResult {
     /// The text in the format.
     pub text: String,
     /// Notes about content that is expressed differently, and warnings about accepted losses.
@@ -190,7 +190,7 @@ pub struct Written {
 ///
 /// The errors of the model, and content that the format cannot represent if losses are refused. With losses, the result
 /// must still be a valid rule set: it is read back.
-pub fn write(model: &Model, format: Format, losses: Losses) -> Result<Written, Findings> {
+pub fn write(model: &Model, format: Format, losses: Losses) -> Result<WriteResult, Findings> {
     let invalid = fuzzy::validate(model, &fuzzy::format::Spans::default());
     if !invalid.is_empty() {
         return Err(Findings(invalid));

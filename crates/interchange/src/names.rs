@@ -8,10 +8,10 @@ use fuzzy::{
     rule::{Condition, Name, Rule},
 };
 
-use crate::{formula, paper::Paper};
+use crate::{formula, text_draft::TextDraft};
 
 /// The names that a format allows.
-pub(crate) struct Allowed {
+pub(crate) struct NameRules {
     /// Whether a character is allowed; others are replaced by `_`.
     pub(crate) is_letter: fn(char) -> bool,
     /// Whether a character is allowed as the first one.
@@ -20,7 +20,7 @@ pub(crate) struct Allowed {
     pub(crate) keywords: &'static [&'static str],
 }
 
-impl Allowed {
+impl NameRules {
     /// The name itself or a similar one, which the format allows and which is not in `taken`.
     fn name(&self, name: &str, taken: &BTreeSet<String>) -> String {
         let letter = |c: char| if (self.is_letter)(c) { c } else { '_' };
@@ -69,14 +69,14 @@ pub(crate) fn is_plain_first(c: char) -> bool {
 }
 
 /// A single name, such as that of the rule set, in the form that a format allows; a note reports a change.
-pub(crate) fn one(name: &str, allowed: &Allowed, paper: &mut Paper) -> String {
+pub(crate) fn one(name: &str, allowed: &NameRules, draft: &mut TextDraft) -> String {
     let plain = allowed.name(name, &BTreeSet::new());
-    note(paper, name, &plain);
+    note(draft, name, &plain);
     plain
 }
 
 /// The model with names that a format allows; notes report changes.
-pub(crate) fn plain(model: &Model, allowed: &Allowed, paper: &mut Paper) -> Model {
+pub(crate) fn plain(model: &Model, allowed: &NameRules, draft: &mut TextDraft) -> Model {
     let mut model = model.clone();
     let mut variables: BTreeMap<String, (String, BTreeMap<String, String>)> = BTreeMap::new();
     let before: Vec<&str> = model
@@ -90,10 +90,10 @@ pub(crate) fn plain(model: &Model, allowed: &Allowed, paper: &mut Paper) -> Mode
         let before: Vec<&str> = variable.terms.iter().map(|t| t.name.as_str()).collect();
         let names = allowed.names(&before);
         for (term, name) in variable.terms.iter_mut().zip(names) {
-            note(paper, &term.name, &name);
+            note(draft, &term.name, &name);
             terms.insert(std::mem::replace(&mut term.name, name.clone()), name);
         }
-        note(paper, &variable.name, &name);
+        note(draft, &variable.name, &name);
         let before = std::mem::replace(&mut variable.name, name.clone());
         variables.insert(before, (name, terms));
     };
@@ -139,10 +139,10 @@ pub(crate) fn plain(model: &Model, allowed: &Allowed, paper: &mut Paper) -> Mode
     model
 }
 
-fn note(paper: &mut Paper, before: &str, after: &str) {
+fn note(draft: &mut TextDraft, before: &str, after: &str) {
     if before != after {
         let message = format!("the name `{before}` becomes `{after}`");
-        paper.note(
+        draft.note(
             "renamed",
             message,
             "the format does not allow all its characters, or the name is already used",

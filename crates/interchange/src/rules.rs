@@ -5,14 +5,14 @@ use fuzzy::{
     rule::{Condition, Consequent, DEEPEST_NESTING, Hedge, Name, Proposition, Rule},
 };
 
-use crate::{conditions, draft::Draft};
+use crate::{conditions, model_draft::ModelDraft};
 
 /// The maximum number of hedges of a conclusion, including those of the conclusions before it.
 const MOST_HEDGES: usize = 64;
 
 /// Reads a rule from words and brackets, which are parts of the text of `draft`; `None` with a finding if it is
 /// invalid.
-pub(crate) fn read(draft: &mut Draft<'_>, words: &[&str]) -> Option<Rule> {
+pub(crate) fn read(draft: &mut ModelDraft<'_>, words: &[&str]) -> Option<Rule> {
     let end = words.last().map_or("", |word| &word[word.len()..]);
     let mut reader = Reader {
         draft,
@@ -43,7 +43,7 @@ pub(crate) fn words(text: &str) -> Vec<&str> {
 }
 
 struct Reader<'r, 't, 'd> {
-    draft: &'d mut Draft<'t>,
+    draft: &'d mut ModelDraft<'t>,
     words: &'r [&'r str],
     next: usize,
     depth: usize,

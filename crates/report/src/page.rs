@@ -1,7 +1,7 @@
 //! The report of one flight, or a comparison of several, as one self-contained HTML file, and the parts of both.
 
 use flagred::{flight::Peak, loaded::Loaded};
-use fuzzy::drawing::{Escaped, Frame, Sheet};
+use fuzzy::drawing::{EscapedText, Frame, SvgDocument};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::{
@@ -138,12 +138,12 @@ pub fn svg(subject: &Subject, loaded: &Loaded) -> Option<String> {
         width: 896.0,
         height: 276.0,
     };
-    let mut sheet = Sheet::styled(960.0, 380.0, [CSS, CHART_CSS, STYLE].concat());
+    let mut sheet = SvgDocument::styled(960.0, 380.0, [CSS, CHART_CSS, STYLE].concat());
     sheet.push(format_args!(
         r#"<text class="verdict {}" x="48" y="30">{}</text><text class="title" x="108" y="30">{}</text>{}"#,
         verdict_class(verdict),
         verdict,
-        Escaped(subject.title()),
+        EscapedText(subject.title()),
         risk.svg(&timeline, frame),
     ));
     Some(sheet.finish(&format!("{verdict} {}", subject.title())))

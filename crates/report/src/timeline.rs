@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use fuzzy::drawing::{Escaped, Frame, Scale, number};
+use fuzzy::drawing::{EscapedText, Frame, Scale, number};
 
 use crate::curve::Stretch;
 
@@ -212,7 +212,7 @@ impl Panel {
                 svg,
                 r#"<path class="event" d="M{} {bottom}V{top}"><title>{}</title></path>"#,
                 number(since_start(*t_s), 2),
-                Escaped(text),
+                EscapedText(text),
             );
         }
         for line in self.lines.iter().filter(|line| !line.data.is_empty()) {
@@ -247,7 +247,7 @@ impl Panel {
             let _ = write!(
                 svg,
                 r#"<text class="{class}" x="{x}" y="{y}">{}</text>"#,
-                Escaped(words)
+                EscapedText(words)
             );
         };
         for (value, label) in self.labels() {

@@ -36,11 +36,11 @@ use fuzzy::{Model, check, model::MembershipFunction};
 pub use confusion::Confusion;
 pub use data::Data;
 pub use folds::Interval;
-pub use numbers::{Moved, Number, moved_although_fixed, numbers, with_numbers_of};
+pub use numbers::{ChangedNumber, Number, moved_although_fixed, numbers, with_numbers_of};
 pub use reliability::Bin;
 pub use settings::{Loss, Settings, TuneError};
 pub use simplify::{
-    Difference, EQUAL, MOST_RULES, Simplified, SimplifyError, SimplifySettings, simplify,
+    Difference, EQUAL, MOST_RULES, SimplifyError, SimplifyResult, SimplifySettings, simplify,
 };
 pub use validation::{CurvePoint, Validation, cross_validate, learning_curve};
 
@@ -49,7 +49,7 @@ use parameters::Parameters;
 
 /// A tuned model.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Tuned {
+pub struct TuneResult {
     /// The model.
     pub model: Model,
     /// The loss of the original model; see [`Loss`].
@@ -59,7 +59,7 @@ pub struct Tuned {
     /// The number of rows for which the tuned model has no value; they count as the middle of the range.
     pub without_value: usize,
     /// The numbers that changed.
-    pub moved: Vec<Moved>,
+    pub moved: Vec<ChangedNumber>,
     /// The constants, as `variable.term`, that are at the end of the range (see [`Settings::beyond_range`]) and would
     /// have a smaller loss beyond it.
     pub at_bounds: Vec<String>,
@@ -123,7 +123,7 @@ pub fn tune(
     data: &Data,
     settings: &Settings,
     watch: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
-) -> Result<Tuned, TuneError> {
+) -> Result<TuneResult, TuneError> {
     data.check(model, settings.loss)?;
     let parameters = Parameters::new(model, settings)?;
     let objective = Objective::new(model, &parameters, data, settings);
@@ -180,7 +180,7 @@ pub fn tune(
     if let Some(digits) = settings.digits {
         best = rounded(&objective, &parameters, model, best, digits)?;
     }
-    Ok(Tuned {
+    Ok(TuneResult {
         before: before.0,
         after: objective.measure(&best),
         without_value: best

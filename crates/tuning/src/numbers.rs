@@ -23,7 +23,7 @@ pub struct Number {
 
 /// A number that tuning changed.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Moved {
+pub struct ChangedNumber {
     /// The element that contains it: `variable.term`, or `rule 3` counted from 1.
     pub of: String,
     /// The name of the number, as in [`Number::name`].
@@ -35,10 +35,10 @@ pub struct Moved {
 }
 
 /// The numbers that differ.
-pub(crate) fn moved(before: &Model, after: &Model) -> Vec<Moved> {
+pub(crate) fn moved(before: &Model, after: &Model) -> Vec<ChangedNumber> {
     let pairs = numbers(before).into_iter().zip(numbers(after));
     let differ = pairs.filter(|(before, after)| before.value != after.value);
-    let moved = differ.map(|(before, after)| Moved {
+    let moved = differ.map(|(before, after)| ChangedNumber {
         of: before.of,
         name: before.name,
         before: before.value,
@@ -48,7 +48,11 @@ pub(crate) fn moved(before: &Model, after: &Model) -> Vec<Moved> {
 }
 
 /// The first number that differs although `settings` do not allow it to change.
-pub fn moved_although_fixed(before: &Model, after: &Model, settings: &Settings) -> Option<Moved> {
+pub fn moved_although_fixed(
+    before: &Model,
+    after: &Model,
+    settings: &Settings,
+) -> Option<ChangedNumber> {
     let (mut movable, mut fixed) = (BTreeSet::new(), BTreeSet::new());
     for variable in before.variables() {
         for term in &variable.terms {

@@ -6,7 +6,7 @@
 /// distances, is divided among its distances in the proportions `exp(z)`; the first `z` of each segment is 0. A
 /// distance that is 0 stays 0.
 #[derive(Debug, Clone)]
-pub(crate) struct Ordered {
+pub(crate) struct OrderedPositions {
     segments: Vec<Segment>,
     count: usize,
 }
@@ -30,10 +30,15 @@ const LEAST_SHARE: f64 = 1e-3;
 /// to the end.
 const AT_END: f64 = 1e-9;
 
-impl Ordered {
+impl OrderedPositions {
     /// `positions` ascend from `low` to `high`. If one is closer to the next than `apart`, that distance is the
     /// minimum.
-    pub(crate) fn new(positions: &[(f64, bool)], low: f64, high: f64, apart: f64) -> Ordered {
+    pub(crate) fn new(
+        positions: &[(f64, bool)],
+        low: f64,
+        high: f64,
+        apart: f64,
+    ) -> OrderedPositions {
         let mut segments = Vec::new();
         // At an end of the range there is no neighbour, so no minimum distance.
         let mut inner = vec![(low, 0.0)];
@@ -47,7 +52,7 @@ impl Ordered {
                 inner = vec![(*position, 0.0)];
             }
         }
-        Ordered {
+        OrderedPositions {
             segments,
             count: positions.len(),
         }
@@ -73,7 +78,7 @@ impl Ordered {
     }
 }
 
-impl Ordered {
+impl OrderedPositions {
     /// Whether these positions can result from some free numbers.
     pub(crate) fn holds(&self, positions: &[f64]) -> bool {
         let mut rest = positions;
@@ -194,7 +199,7 @@ mod tests {
     #[test]
     fn zeros_give_the_original_positions() {
         let positions = [(0.0, false), (0.2, false), (0.5, false)];
-        let ordered = Ordered::new(&positions, 0.0, 1.0, 0.05);
+        let ordered = OrderedPositions::new(&positions, 0.0, 1.0, 0.05);
         // The first one stays at the end of the range.
         assert_eq!(ordered.free(), 2);
         let same = ordered.positions(&[0.0; 2]);
@@ -205,7 +210,8 @@ mod tests {
 
     #[test]
     fn fixed_positions_stay() {
-        let ordered = Ordered::new(&[(0.2, false), (0.5, true), (0.7, false)], 0.0, 1.0, 0.0);
+        let ordered =
+            OrderedPositions::new(&[(0.2, false), (0.5, true), (0.7, false)], 0.0, 1.0, 0.0);
         let moved = ordered.positions(&[3.0, -2.0]);
         assert_eq!(moved[1], 0.5);
         assert!(moved[0] < 0.1 && moved[2] > 0.9, "{moved:?}");
@@ -219,7 +225,7 @@ mod tests {
             free in prop::collection::vec(-30.0..30.0_f64, 16),
         ) {
             positions.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let ordered = Ordered::new(&positions, 0.0, 10.0, apart);
+            let ordered = OrderedPositions::new(&positions, 0.0, 10.0, apart);
             let moved = ordered.positions(&free[..ordered.free()]);
             prop_assert_eq!(moved.len(), positions.len());
             let as_given: Vec<f64> = positions.iter().map(|(position, _)| *position).collect();

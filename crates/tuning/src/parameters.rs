@@ -6,14 +6,14 @@ use fuzzy::{
     model::{Defuzzifier, MembershipFunction, Output, Role, Term, Variable},
 };
 
-use crate::{TuneError, data::target, ordered::Ordered, settings::Settings};
+use crate::{TuneError, data::target, ordered::OrderedPositions, settings::Settings};
 
 /// The parameters of a model that may change.
 #[derive(Debug, Clone)]
 pub(crate) struct Parameters {
     model: Model,
     beyond_range: bool,
-    variables: Vec<(Place, Movable)>,
+    variables: Vec<(VariableIndex, FreeParameters)>,
     /// The indices of the rules whose weights may change.
     weights: Vec<usize>,
     /// The terms that are fitted in closed form, all of the only output. With a chain of outputs the problem is not
@@ -24,25 +24,28 @@ pub(crate) struct Parameters {
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Place {
+enum VariableIndex {
     Input(usize),
     Output(usize),
 }
 
 /// The parameters of a variable that may change.
 #[derive(Debug, Clone)]
-enum Movable {
+enum FreeParameters {
     /// The peaks of a partition.
-    Partition(Ordered),
+    Partition(OrderedPositions),
     /// Terms with separate shapes: their anchors in ascending order, and the parameters attached to each.
-    Terms { anchors: Ordered, hung: Vec<Hung> },
+    Terms {
+        anchors: OrderedPositions,
+        anchored: Vec<AnchoredTerm>,
+    },
     /// The consequents of a Takagi-Sugeno output: the scale of each number of each term.
-    Consequents(Vec<(usize, Vec<Scale>)>),
+    Consequents(Vec<(usize, Vec<ConsequentParameter>)>),
 }
 
 /// A number of a consequent, which changes by `step` times its free number, within bounds.
 #[derive(Debug, Clone, Copy)]
-struct Scale {
+struct ConsequentParameter {
     step: f64,
     value: f64,
     bounds: (f64, f64),
@@ -50,16 +53,16 @@ struct Scale {
 
 /// A term whose parameters are attached to its anchor, the point where it is highest.
 #[derive(Debug, Clone)]
-struct Hung {
+struct AnchoredTerm {
     term: usize,
-    parameters: Vec<Link>,
+    parameters: Vec<ParameterLink>,
     /// The order in which the parameters are computed: the anchor first.
     outward: Vec<usize>,
 }
 
 /// How a parameter depends on its free number `z`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Link {
+enum ParameterLink {
     /// The anchor itself.
     Anchor,
     /// A position: the parameter with this index plus [`factor`] times a distance. A distance of 0 (a vertical edge)
@@ -122,7 +125,7 @@ impl Parameters {
         let is_alone = model.outputs.len() == 1;
         for (i, variable) in model.inputs.iter().enumerate() {
             let moves = |term: &Term| may_move(&variable.name, &term.name);
-            parameters.add(Place::Input(i), terms(variable, settings, &moves));
+            parameters.add(VariableIndex::Input(i), terms(variable, settings, &moves));
         }
         for (i, output) in model.outputs.iter().enumerate() {
             let moves = |term: &Term| may_move(&output.variable.name, &term.name);
@@ -136,10 +139,10 @@ impl Parameters {
                 }
                 true => {
                     let beyond_range = settings.beyond_range;
-                    Movable::Consequents(consequents(model, output, beyond_range, &moves))
+                    FreeParameters::Consequents(consequents(model, output, beyond_range, &moves))
                 }
             };
-            parameters.add(Place::Output(i), movable);
+            parameters.add(VariableIndex::Output(i), movable);
         }
         if settings.weights {
             parameters.weights = (0..model.rules.len()).collect();
@@ -150,7 +153,7 @@ impl Parameters {
         }
     }
 
-    fn add(&mut self, place: Place, movable: Movable) {
+    fn add(&mut self, place: VariableIndex, movable: FreeParameters) {
         if movable.free() > 0 {
             self.variables.push((place, movable));
         }
@@ -167,7 +170,7 @@ impl Parameters {
         let mut limits = Vec::with_capacity(self.free());
         for (_, movable) in &self.variables {
             match movable {
-                Movable::Consequents(terms) => {
+                FreeParameters::Consequents(terms) => {
                     let scales = terms.iter().flat_map(|(_, scales)| scales);
                     limits.extend(scales.map(|scale| {
                         let (low, high) = scale.bounds;
@@ -185,7 +188,7 @@ impl Parameters {
     /// The constants that may change, by the indices of their output and their term, with their bounds.
     pub(crate) fn bounded(&self) -> Vec<((usize, usize), (f64, f64))> {
         let searched = self.variables.iter().flat_map(|of| match of {
-            (Place::Output(output), Movable::Consequents(terms)) => {
+            (VariableIndex::Output(output), FreeParameters::Consequents(terms)) => {
                 terms.iter().map(|(term, _)| (*output, *term)).collect()
             }
             _ => Vec::new(),
@@ -219,8 +222,8 @@ impl Parameters {
         keeps_constants
             && self.variables.iter().all(|(place, movable)| {
                 let variable = match *place {
-                    Place::Input(input) => model.inputs.get(input),
-                    Place::Output(output) => model.outputs.get(output).map(|o| &o.variable),
+                    VariableIndex::Input(input) => model.inputs.get(input),
+                    VariableIndex::Output(output) => model.outputs.get(output).map(|o| &o.variable),
                 };
                 variable.is_some_and(|variable| movable.keeps(variable))
             })
@@ -234,8 +237,10 @@ impl Parameters {
             let (own, behind) = rest.split_at(movable.free().min(rest.len()));
             rest = behind;
             let variable = match *place {
-                Place::Input(input) => model.inputs.get_mut(input),
-                Place::Output(output) => model.outputs.get_mut(output).map(|o| &mut o.variable),
+                VariableIndex::Input(input) => model.inputs.get_mut(input),
+                VariableIndex::Output(output) => {
+                    model.outputs.get_mut(output).map(|o| &mut o.variable)
+                }
             };
             if let Some(variable) = variable {
                 movable.apply(own, variable);
@@ -284,15 +289,19 @@ fn is_linear(term: &Term) -> bool {
 }
 
 /// The parameters of the membership functions of a variable that may change.
-fn terms(variable: &Variable, settings: &Settings, moves: &dyn Fn(&Term) -> bool) -> Movable {
+fn terms(
+    variable: &Variable,
+    settings: &Settings,
+    moves: &dyn Fn(&Term) -> bool,
+) -> FreeParameters {
     let apart = settings.min_distance * (variable.high - variable.low);
     if let Some(peaks) = variable.partition_peaks() {
         let fixed = variable.terms.iter().map(|term| !moves(term));
         let positions: Vec<(f64, bool)> = peaks.into_iter().zip(fixed).collect();
-        let ordered = Ordered::new(&positions, variable.low, variable.high, apart);
-        return Movable::Partition(ordered);
+        let ordered = OrderedPositions::new(&positions, variable.low, variable.high, apart);
+        return FreeParameters::Partition(ordered);
     }
-    let mut anchored: Vec<(f64, bool, Hung)> = Vec::new();
+    let mut anchored: Vec<(f64, bool, AnchoredTerm)> = Vec::new();
     // Limits are not tuned, because they are requirements of the author.
     let free_terms = match variable.step_limits() {
         Some(_) => &[],
@@ -306,9 +315,9 @@ fn terms(variable: &Variable, settings: &Settings, moves: &dyn Fn(&Term) -> bool
         );
         if let Some(anchor) = anchor(&parameters).filter(|_| !is_constant) {
             let may_move = moves(term);
-            let hung = Hung::new(index, &parameters, anchor, may_move);
+            let term = AnchoredTerm::new(index, &parameters, anchor, may_move);
             let position = parameters.get(anchor).map_or(0.0, |(_, _, value)| *value);
-            anchored.push((position, !may_move, hung));
+            anchored.push((position, !may_move, term));
         }
     }
     anchored.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -322,9 +331,12 @@ fn terms(variable: &Variable, settings: &Settings, moves: &dyn Fn(&Term) -> bool
     let high = positions
         .last()
         .map_or(variable.high, |(at, _)| at.max(variable.high));
-    Movable::Terms {
-        anchors: Ordered::new(&positions, low, high, apart),
-        hung: anchored.into_iter().map(|(.., hung)| hung).collect(),
+    FreeParameters::Terms {
+        anchors: OrderedPositions::new(&positions, low, high, apart),
+        anchored: anchored
+            .into_iter()
+            .map(|(.., anchored)| anchored)
+            .collect(),
     }
 }
 
@@ -346,7 +358,7 @@ fn consequents(
     output: &Output,
     beyond_range: bool,
     moves: &dyn Fn(&Term) -> bool,
-) -> Vec<(usize, Vec<Scale>)> {
+) -> Vec<(usize, Vec<ConsequentParameter>)> {
     let height = output.variable.high - output.variable.low;
     let width = |name: &String| {
         let input = model.inputs.iter().find(|input| input.name == *name);
@@ -355,7 +367,7 @@ fn consequents(
     let scales = |(index, term): (usize, &Term)| match &term.membership_function {
         _ if !moves(term) => None,
         MembershipFunction::Constant { value } => {
-            let scale = Scale {
+            let scale = ConsequentParameter {
                 step: height,
                 value: *value,
                 bounds: bounds(&output.variable, term, beyond_range),
@@ -366,7 +378,7 @@ fn consequents(
             coefficients,
             constant,
         } => {
-            let scale = |step: f64, value: f64| Scale {
+            let scale = |step: f64, value: f64| ConsequentParameter {
                 step,
                 value,
                 bounds: UNBOUNDED,
@@ -386,65 +398,69 @@ fn consequents(
         .collect()
 }
 
-impl Movable {
+impl FreeParameters {
     fn free(&self) -> usize {
         match self {
-            Movable::Partition(peaks) => peaks.free(),
-            Movable::Terms { anchors, hung, .. } => {
-                anchors.free() + hung.iter().map(Hung::free).sum::<usize>()
+            FreeParameters::Partition(peaks) => peaks.free(),
+            FreeParameters::Terms {
+                anchors, anchored, ..
+            } => anchors.free() + anchored.iter().map(AnchoredTerm::free).sum::<usize>(),
+            FreeParameters::Consequents(terms) => {
+                terms.iter().map(|(_, scales)| scales.len()).sum()
             }
-            Movable::Consequents(terms) => terms.iter().map(|(_, scales)| scales.len()).sum(),
         }
     }
 
     fn keeps(&self, variable: &Variable) -> bool {
         match self {
-            Movable::Partition(ordered) => variable
+            FreeParameters::Partition(ordered) => variable
                 .partition_peaks()
                 .is_some_and(|peaks| ordered.holds(&peaks)),
-            Movable::Terms { anchors, hung } => {
-                let anchor = |hung: &Hung| {
+            FreeParameters::Terms { anchors, anchored } => {
+                let anchor = |anchored: &AnchoredTerm| {
                     let parameters = variable
                         .terms
-                        .get(hung.term)?
+                        .get(anchored.term)?
                         .membership_function
                         .parameters();
                     parameters
-                        .get(*hung.outward.first()?)
+                        .get(*anchored.outward.first()?)
                         .map(|(.., value)| *value)
                 };
-                let positions: Option<Vec<f64>> = hung.iter().map(anchor).collect();
+                let positions: Option<Vec<f64>> = anchored.iter().map(anchor).collect();
                 positions.is_some_and(|positions| anchors.holds(&positions))
             }
-            Movable::Consequents(_) => true,
+            FreeParameters::Consequents(_) => true,
         }
     }
 
     /// Changes the terms of a variable.
     fn apply(&self, free: &[f64], variable: &mut Variable) {
         match self {
-            Movable::Partition(peaks) => {
+            FreeParameters::Partition(peaks) => {
                 let names: Vec<String> = variable.terms.drain(..).map(|term| term.name).collect();
                 let peaks = peaks.positions(free);
                 let moved = names.iter().map(String::as_str).zip(peaks);
                 *variable = variable.clone().partition_at(moved);
             }
-            Movable::Terms { anchors, hung, .. } => {
+            FreeParameters::Terms {
+                anchors, anchored, ..
+            } => {
                 let (of_anchors, mut rest) = free.split_at(anchors.free().min(free.len()));
-                for (anchor, hung) in anchors.positions(of_anchors).into_iter().zip(hung) {
-                    let (own, behind) = rest.split_at(hung.free().min(rest.len()));
+                for (anchor, anchored) in anchors.positions(of_anchors).into_iter().zip(anchored) {
+                    let (own, behind) = rest.split_at(anchored.free().min(rest.len()));
                     rest = behind;
-                    if let Some(term) = variable.terms.get_mut(hung.term) {
+                    if let Some(term) = variable.terms.get_mut(anchored.term) {
                         let moved = term
                             .membership_function
-                            .with_parameters(&hung.moved(anchor, own));
+                            .with_parameters(&anchored.moved(anchor, own));
                         if let Ok(moved) = moved {
                             term.membership_function = moved;
                         }
                     }
                 }
             }
-            Movable::Consequents(terms) => {
+            FreeParameters::Consequents(terms) => {
                 let mut z = free.iter();
                 for (index, scales) in terms {
                     let mut moved = scales.iter().map(|scale| {
@@ -476,8 +492,13 @@ impl Movable {
     }
 }
 
-impl Hung {
-    fn new(term: usize, parameters: &[(&str, Role, f64)], anchor: usize, may_move: bool) -> Hung {
+impl AnchoredTerm {
+    fn new(
+        term: usize,
+        parameters: &[(&str, Role, f64)],
+        anchor: usize,
+        may_move: bool,
+    ) -> AnchoredTerm {
         let is_position = |i: usize| {
             parameters
                 .get(i)
@@ -485,13 +506,13 @@ impl Hung {
         };
         let link = |(i, (_, _, value)): (usize, &(&str, Role, f64))| {
             if i == anchor {
-                return Link::Anchor;
+                return ParameterLink::Anchor;
             }
             if !may_move {
-                return Link::Fixed(*value);
+                return ParameterLink::Fixed(*value);
             }
             if !is_position(i) {
-                return Link::Scale(*value);
+                return ParameterLink::Scale(*value);
             }
             let next = match i < anchor {
                 true => (i + 1..=anchor).find(|next| is_position(*next)),
@@ -499,12 +520,12 @@ impl Hung {
             };
             let next = next.unwrap_or(anchor);
             let at = parameters.get(next).map_or(*value, |(_, _, at)| *at);
-            Link::Beyond(next, value - at)
+            ParameterLink::Beyond(next, value - at)
         };
-        let links: Vec<Link> = parameters.iter().enumerate().map(link).collect();
+        let links: Vec<ParameterLink> = parameters.iter().enumerate().map(link).collect();
         let mut outward: Vec<usize> = (0..links.len()).collect();
         outward.sort_by_key(|i| i.abs_diff(anchor));
-        Hung {
+        AnchoredTerm {
             term,
             parameters: links,
             outward,
@@ -518,7 +539,7 @@ impl Hung {
     /// The parameters for a position of the anchor and free numbers.
     fn moved(&self, anchor: f64, free: &[f64]) -> Vec<f64> {
         let mut z = free.iter();
-        let of_link = |link: &Link| match link.is_free() {
+        let of_link = |link: &ParameterLink| match link.is_free() {
             true => z.next().map_or(1.0, |z| factor(*z)),
             false => 1.0,
         };
@@ -526,21 +547,21 @@ impl Hung {
         let mut moved = vec![0.0; factors.len()];
         for &i in &self.outward {
             moved[i] = match self.parameters[i] {
-                Link::Anchor => anchor,
-                Link::Beyond(next, distance) => moved[next] + distance * factors[i],
-                Link::Scale(number) => number * factors[i],
-                Link::Fixed(number) => number,
+                ParameterLink::Anchor => anchor,
+                ParameterLink::Beyond(next, distance) => moved[next] + distance * factors[i],
+                ParameterLink::Scale(number) => number * factors[i],
+                ParameterLink::Fixed(number) => number,
             };
         }
         moved
     }
 }
 
-impl Link {
+impl ParameterLink {
     fn is_free(&self) -> bool {
         match self {
-            Link::Beyond(_, number) | Link::Scale(number) => *number != 0.0,
-            Link::Anchor | Link::Fixed(_) => false,
+            ParameterLink::Beyond(_, number) | ParameterLink::Scale(number) => *number != 0.0,
+            ParameterLink::Anchor | ParameterLink::Fixed(_) => false,
         }
     }
 }

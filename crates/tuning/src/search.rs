@@ -25,7 +25,7 @@ const PATIENCE: u32 = 3;
 
 /// Receives the step and the best point that satisfies all claims, if there is one yet, and returns whether to
 /// continue.
-pub(crate) type Watch<'a> = dyn FnMut(u32, Option<&Point>) -> ControlFlow<()> + 'a;
+pub(crate) type SearchCallback<'a> = dyn FnMut(u32, Option<&Point>) -> ControlFlow<()> + 'a;
 
 /// Searches from given free numbers, for at most `iterations` steps. `watch` is called with each point and can end the
 /// search. A random start may violate a claim: then there is no point until a step satisfies it.
@@ -34,7 +34,7 @@ pub(crate) fn search(
     parameters: &Parameters,
     from: &[f64],
     iterations: u32,
-    watch: &mut Watch<'_>,
+    watch: &mut SearchCallback<'_>,
 ) -> Result<(Option<Point>, ControlFlow<()>), TuneError> {
     let limits = parameters.limits();
     let mut z = within(&limits, from.iter().copied());

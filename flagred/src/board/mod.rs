@@ -26,7 +26,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use fuzzy::table::{Damaged, Sought};
+use fuzzy::table::{DamagedArray, StageRuleCriterion};
 
 use crate::{
     cause::{Cause, Propositions, RuleQuery},
@@ -108,7 +108,7 @@ pub enum SetupError {
     /// The profile reads a motor that the vehicle does not have.
     NoMotors,
     /// The plan is damaged.
-    Plan(Damaged),
+    Plan(DamagedArray),
     /// The geometry does not have factors for every motor, or its factors do not separate roll, pitch, yaw and thrust.
     Geometry,
 }
@@ -135,9 +135,9 @@ impl Plan<'_> {
     ///
     /// # Errors
     /// Returns the first array that has an index out of bounds or a window of zero length.
-    pub fn check(&self) -> Result<(), Damaged> {
+    pub fn check(&self) -> Result<(), DamagedArray> {
         self.rules.check()?;
-        let require = |holds: bool, array| holds.then_some(()).ok_or(Damaged(array));
+        let require = |holds: bool, array| holds.then_some(()).ok_or(DamagedArray(array));
         let inputs = self.inputs.len();
         require(
             (self.output as usize) < self.rules.table.outputs.len(),
@@ -263,10 +263,10 @@ impl Plan<'_> {
         let is_read = |said: &&Proposition| said.input as usize >= inputs.len();
         let cause = propositions.cause(inputs, risk, outputs, |output, asked, pick| {
             let sought = match asked {
-                RuleQuery::Raises(value) => Sought::Raises(value),
+                RuleQuery::Raises(value) => StageRuleCriterion::Raises(value),
                 RuleQuery::Concludes(proposition) => {
                     let before = self.propositions.get(..proposition)?;
-                    Sought::Concludes(before.iter().filter(is_read).count())
+                    StageRuleCriterion::Concludes(before.iter().filter(is_read).count())
                 }
             };
             let given = (&*point, &**outcomes);

@@ -1,6 +1,8 @@
 //! A compiled rule set as plain data, and its evaluation in memory that the caller provides.
 
-use fuzzy::table::{Chain, Damaged, Outcome, Partial, Scratch, Stage, Strongest, Table, Values};
+use fuzzy::table::{
+    Chain, DamagedArray, Outcome, PartialConjunction, Scratch, Stage, StrongestRule, Table, Values,
+};
 
 /// A compiled rule set, as plain data.
 #[derive(Debug, Clone, Copy)]
@@ -39,7 +41,7 @@ impl<'a> Rules<'a> {
     ///
     /// # Errors
     /// Returns the first array that has an index out of bounds.
-    pub fn check(&self) -> Result<(), Damaged> {
+    pub fn check(&self) -> Result<(), DamagedArray> {
         match self.chain() {
             None => self.table.check(),
             Some(chain) => chain.check(self.inputs()),
@@ -87,11 +89,14 @@ impl<'a> Rules<'a> {
     /// An upper bound, in bytes, for an evaluator, its memory and the rules, if pieces are aligned to at most 16 bytes.
     pub const fn bytes(&self) -> usize {
         const ALIGNED: usize = 15;
-        let output = size_of::<Strongest>() + 2 * size_of::<Outcome>();
+        let output = size_of::<StrongestRule>() + 2 * size_of::<Outcome>();
         (size_of::<Rules<'_>>() + size_of::<Evaluator<'_>>() + 8 * ALIGNED)
             .saturating_add(self.table.outputs.len().saturating_mul(output))
             .saturating_add(self.numbers().saturating_mul(size_of::<f64>()))
-            .saturating_add(self.partials().saturating_mul(size_of::<Partial>()))
+            .saturating_add(
+                self.partials()
+                    .saturating_mul(size_of::<PartialConjunction>()),
+            )
     }
 }
 
@@ -102,9 +107,9 @@ pub struct RuleMemory<'m> {
     /// [`Rules::numbers`].
     pub numbers: &'m mut [f64],
     /// [`Rules::partials`].
-    pub partials: &'m mut [Partial],
+    pub partials: &'m mut [PartialConjunction],
     /// One for each output.
-    pub strongest: &'m mut [Strongest],
+    pub strongest: &'m mut [StrongestRule],
     /// One for each output.
     pub outcomes: &'m mut [Outcome],
     /// One for each output.

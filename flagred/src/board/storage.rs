@@ -1,6 +1,6 @@
 //! The memory of a monitor: provided in parts, as one value that can be static, or allocated.
 
-use fuzzy::table::{Outcome, Partial, Strongest};
+use fuzzy::table::{Outcome, PartialConjunction, StrongestRule};
 
 use super::{Monitor, Plan, SetupError};
 use crate::{
@@ -30,9 +30,9 @@ pub struct Memory<'m> {
     /// As many as [`Sizes::numbers`].
     pub numbers: &'m mut [f64],
     /// As many as [`Sizes::partials`].
-    pub partials: &'m mut [Partial],
+    pub partials: &'m mut [PartialConjunction],
     /// As many as [`Sizes::outputs`].
-    pub strongest: &'m mut [Strongest],
+    pub strongest: &'m mut [StrongestRule],
     /// As many as [`Sizes::outputs`].
     pub outcomes: &'m mut [Outcome],
     /// As many as [`Sizes::outputs`].
@@ -84,14 +84,18 @@ impl Plan<'_> {
         let sizes = self.sizes();
         let own = size_of::<Plan<'_>>() + size_of::<Monitor<'_>>() + size_of::<Window>();
         let channel = size_of::<ChannelState>() + size_of::<Channel>();
-        let output = size_of::<Strongest>() + 2 * size_of::<Outcome>();
+        let output = size_of::<StrongestRule>() + 2 * size_of::<Outcome>();
         let motor = size_of::<Motor>() + size_of::<Range>() + size_of::<f64>();
         let frame = 4 * size_of::<usize>() + 16 * ALIGNED;
         (own + frame + size_of_val(self.inputs))
             .saturating_add(sizes.channels.saturating_mul(channel))
             .saturating_add(sizes.outputs.saturating_mul(output))
             .saturating_add(sizes.numbers.saturating_mul(size_of::<f64>()))
-            .saturating_add(sizes.partials.saturating_mul(size_of::<Partial>()))
+            .saturating_add(
+                sizes
+                    .partials
+                    .saturating_mul(size_of::<PartialConjunction>()),
+            )
             .saturating_add(motors.saturating_mul(motor))
     }
 }
@@ -121,8 +125,8 @@ pub struct Storage<
     const MOTORS: usize,
 > {
     numbers: [f64; NUMBERS],
-    partials: [Partial; PARTIALS],
-    strongest: [Strongest; OUTPUTS],
+    partials: [PartialConjunction; PARTIALS],
+    strongest: [StrongestRule; OUTPUTS],
     outcomes: [Outcome; OUTPUTS],
     own: [Outcome; OUTPUTS],
     seen: [ChannelState; CHANNELS],
@@ -146,8 +150,8 @@ impl<
     pub const fn new() -> Self {
         Storage {
             numbers: [0.0; NUMBERS],
-            partials: [Partial::NONE; PARTIALS],
-            strongest: [Strongest::NONE; OUTPUTS],
+            partials: [PartialConjunction::NONE; PARTIALS],
+            strongest: [StrongestRule::NONE; OUTPUTS],
             outcomes: [Outcome::UNDEFINED; OUTPUTS],
             own: [Outcome::UNDEFINED; OUTPUTS],
             seen: [const { ChannelState::IDLE }; CHANNELS],
@@ -170,8 +174,8 @@ impl<
 #[derive(Debug)]
 pub struct OwnedMemory {
     numbers: Vec<f64>,
-    partials: Vec<Partial>,
-    strongest: Vec<Strongest>,
+    partials: Vec<PartialConjunction>,
+    strongest: Vec<StrongestRule>,
     outcomes: Vec<Outcome>,
     own: Vec<Outcome>,
     seen: Vec<ChannelState>,
@@ -186,8 +190,8 @@ impl OwnedMemory {
         let sizes = plan.sizes();
         OwnedMemory {
             numbers: vec![0.0; sizes.numbers],
-            partials: vec![Partial::NONE; sizes.partials],
-            strongest: vec![Strongest::NONE; sizes.outputs],
+            partials: vec![PartialConjunction::NONE; sizes.partials],
+            strongest: vec![StrongestRule::NONE; sizes.outputs],
             outcomes: vec![Outcome::UNDEFINED; sizes.outputs],
             own: vec![Outcome::UNDEFINED; sizes.outputs],
             seen: vec![ChannelState::IDLE; sizes.channels],

@@ -13,7 +13,7 @@ use crate::{
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
-pub struct Accepted {
+pub struct AcceptedFindings {
     /// The code of the finding.
     pub finding: String,
     /// The author's reason.
@@ -29,13 +29,13 @@ pub(super) fn by(model: &Model, finding: &Diagnostic) -> Option<usize> {
 }
 
 /// Returns the entries, each with the number of findings that it accepts.
-pub(super) fn counted(report: &Report, model: &Model) -> Vec<Accepted> {
-    let entry = |one: &crate::model::Allowed| Accepted {
+pub(super) fn counted(report: &Report, model: &Model) -> Vec<AcceptedFindings> {
+    let entry = |one: &crate::model::AllowedFinding| AcceptedFindings {
         finding: one.finding.clone(),
         because: one.because.clone(),
         count: 0,
     };
-    let mut entries: Vec<Accepted> = model.allow.iter().map(entry).collect();
+    let mut entries: Vec<AcceptedFindings> = model.allow.iter().map(entry).collect();
     if entries.is_empty() {
         return entries;
     }
@@ -53,7 +53,7 @@ pub(super) fn unneeded(report: &Report, model: &Model, spans: &Spans) -> Vec<Dia
     if !is_complete {
         return Vec::new();
     }
-    let warning = |(i, one): (usize, Accepted)| {
+    let warning = |(i, one): (usize, AcceptedFindings)| {
         let span = spans.allow.get(i).cloned().unwrap_or_default();
         let message = format!("`allow` accepts `{}`, which does not occur", one.finding);
         let finding = Diagnostic::warning("unneeded-allow", span, message);

@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use crate::model::{MembershipFunction, Parts, Variable};
+use crate::model::{MembershipFunction, ShapeParts, Variable};
 
 /// The number of evenly spaced steps over a range.
 const EVENLY_SPACED: usize = 64;
@@ -30,9 +30,9 @@ pub(super) fn values(variable: &Variable) -> Vec<f64> {
 /// Returns the parameters of a membership function: corners and middles, but also widths and slopes.
 pub(super) fn marks(shape: &MembershipFunction) -> Vec<f64> {
     match shape.parts() {
-        Parts::Fixed(_, parameters) => parameters,
-        Parts::Points(points) => points.iter().map(|&(x, _)| x).collect(),
-        Parts::Formula(_) | Parts::Linear(..) => Vec::new(),
+        ShapeParts::Fixed(_, parameters) => parameters,
+        ShapeParts::Points(points) => points.iter().map(|&(x, _)| x).collect(),
+        ShapeParts::Formula(_) | ShapeParts::Linear(..) => Vec::new(),
     }
 }
 

@@ -10,7 +10,7 @@ use crate::model::{Model, Variable};
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
-pub struct Uncovered {
+pub struct UncoveredRegion {
     /// The name of the output.
     pub output: String,
     /// The firing strength that no rule reaches; 0 if `silent`.
@@ -18,7 +18,7 @@ pub struct Uncovered {
     /// Whether no rule fires at all, so that the output has no value.
     pub silent: bool,
     /// The sides of the box. Inputs that are not listed span their whole range.
-    pub sides: Vec<Side>,
+    pub sides: Vec<BoxSide>,
     /// The fraction of the input space that the box covers.
     pub share: f64,
     /// Antecedents that would cover the box, as terms of the inputs named in `sides`.
@@ -33,7 +33,7 @@ pub struct Uncovered {
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Side {
+pub struct BoxSide {
     /// The name of the input.
     pub input: String,
     /// The lower end.
@@ -55,7 +55,7 @@ pub struct Antecedent {
 
 /// Uncovered boxes, with a flag for whether the list is complete.
 pub(super) struct Boxes {
-    pub(super) found: Vec<Uncovered>,
+    pub(super) found: Vec<UncoveredRegion>,
     pub(super) complete: bool,
 }
 
@@ -72,14 +72,14 @@ const MOST_LOOKS: usize = 100_000;
 const MOST_LOOKS_IN_ALL: usize = 4_000_000;
 
 /// State that is shared by the searches for all outputs.
-pub(super) struct Shared {
+pub(super) struct SearchBudget {
     looks_left: usize,
 }
 
-impl Shared {
+impl SearchBudget {
     pub(super) fn new() -> Self {
         let looks_left = MOST_LOOKS_IN_ALL;
-        Shared { looks_left }
+        SearchBudget { looks_left }
     }
 }
 
@@ -88,7 +88,7 @@ pub(super) fn uncovered(
     model: &Model,
     output: &str,
     coverage: Option<f64>,
-    shared: &mut Shared,
+    shared: &mut SearchBudget,
     known: &mut Changes,
 ) -> Boxes {
     let level = coverage.map_or(Level::fires(model), Level::reaches);
@@ -106,7 +106,7 @@ pub(super) fn uncovered(
     let logic = Logic::new(model, conditions, level, Extent::Intervals, known);
     let (boxes, complete) = search(&logic, shared);
     let boxes = merged(boxes);
-    let mut found: Vec<Uncovered> = boxes
+    let mut found: Vec<UncoveredRegion> = boxes
         .iter()
         .map(|cells| describe(model, &logic, cells, output, coverage))
         .collect();
@@ -115,7 +115,7 @@ pub(super) fn uncovered(
 }
 
 /// Returns the boxes in which no formula is true, and whether the search is complete.
-fn search(logic: &Logic, shared: &mut Shared) -> (Vec<Cells>, bool) {
+fn search(logic: &Logic, shared: &mut SearchBudget) -> (Vec<Cells>, bool) {
     let all: Vec<usize> = (0..logic.formulas.len()).collect();
     let mut boxes = Vec::new();
     let most = shared.looks_left.min(MOST_LOOKS);
@@ -199,7 +199,7 @@ fn describe(
     cells: &Cells,
     output: &str,
     coverage: Option<f64>,
-) -> Uncovered {
+) -> UncoveredRegion {
     /// A thinner box is a single value with a rounding error, and is reported as that value.
     const THIN: f64 = 1e-9;
     let mut sides = Vec::new();
@@ -216,7 +216,7 @@ fn describe(
         }
         let input = variable.name.clone();
         let dominating =
-            Dominating::of(variable, cuts.get(from..=to).unwrap_or_default(), coverage);
+            DominantTerms::of(variable, cuts.get(from..=to).unwrap_or_default(), coverage);
         let term = |term: &str| Antecedent {
             input: input.clone(),
             term: term.into(),
@@ -227,14 +227,14 @@ fn describe(
         }
         let high = if high - low > THIN * range { high } else { low };
         share *= (high - low) / range;
-        sides.push(Side { input, low, high });
+        sides.push(BoxSide { input, low, high });
     }
     let count = choices
         .iter()
         .map(Vec::len)
         .fold(1usize, usize::saturating_mul);
     let missing = combinations(&choices, MOST_MISSING);
-    Uncovered {
+    UncoveredRegion {
         output: output.into(),
         coverage: coverage.unwrap_or(0.0),
         silent: coverage.is_none(),
@@ -251,17 +251,17 @@ fn describe(
 }
 
 /// The terms with the highest degree at some value of an interval of an input, from left to right.
-struct Dominating<'v> {
+struct DominantTerms<'v> {
     /// The terms among these whose degree reaches the coverage at such a value.
     terms: Vec<&'v str>,
     /// Whether at some value no term reaches the coverage.
     weak: bool,
 }
 
-impl<'v> Dominating<'v> {
+impl<'v> DominantTerms<'v> {
     fn of(variable: &'v Variable, cuts: &[f64], coverage: Option<f64>) -> Self {
         const LOOKS_IN_A_CELL: usize = 8;
-        let mut found = Dominating {
+        let mut found = DominantTerms {
             terms: Vec::new(),
             weak: false,
         };

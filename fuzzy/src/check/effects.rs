@@ -3,7 +3,7 @@
 
 use alloc::{format, string::String, vec::Vec};
 
-use super::{findings::At, shown};
+use super::{findings::ModelPositions, shown};
 use crate::{
     diagnostic::Diagnostic,
     model::{Formula, MembershipFunction, Model, Term, Variable},
@@ -23,7 +23,7 @@ const STEPS: u32 = 200;
 const NEARLY_ALL: f64 = 0.98;
 
 /// Adds the findings, in the order of the model's parts.
-pub(super) fn of(model: &Model, at: &At<'_>, found: &mut Vec<Diagnostic>) {
+pub(super) fn of(model: &Model, at: &ModelPositions<'_>, found: &mut Vec<Diagnostic>) {
     for input in &model.inputs {
         constants(input, at, found);
     }
@@ -101,7 +101,7 @@ impl Degrees<'_> {
 /// Adds the terms of an input whose degree is nearly the same on the whole range, or on nearly the whole range,
 /// including values at which another term is true as well. Degrees below [`EQUAL`] on the whole range are reported by
 /// the analysis of terms outside the range, and a `constant` is intended.
-fn constants(input: &Variable, at: &At<'_>, found: &mut Vec<Diagnostic>) {
+fn constants(input: &Variable, at: &ModelPositions<'_>, found: &mut Vec<Diagnostic>) {
     let degrees: Vec<Degrees<'_>> = input
         .terms
         .iter()

@@ -9,8 +9,8 @@ use alloc::{
 use core::ops::Range;
 
 use super::{
-    AgainstTrend, Contradiction, Coordinate, Counterexample, Direction, EqualTerms, Hole, Jump,
-    Reach, Report, TermOf, Uncovered, effects,
+    AgainstTrend, Contradiction, Coordinate, Counterexample, Direction, EqualTerms, Jump, Reach,
+    Report, TermGap, TermOf, UncoveredRegion, effects,
     gaps::{Gap, gaps, is_missing},
     outer, shown,
     terms::is_outside,
@@ -29,7 +29,7 @@ const MOST_BOXES_TOLD: usize = 10;
 
 /// Returns the diagnostics of a report, with the spans of the model's parts, including those that the author accepts.
 pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnostic> {
-    let at = At { model, spans };
+    let at = ModelPositions { model, spans };
     let mut found = Vec::new();
     duplicate_rules(model, &at, &mut found);
     let gaps = gaps(report);
@@ -118,7 +118,7 @@ pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnosti
 }
 
 /// Reports rules that are equal except for their weights.
-fn duplicate_rules(model: &Model, at: &At<'_>, findings: &mut Vec<Diagnostic>) {
+fn duplicate_rules(model: &Model, at: &ModelPositions<'_>, findings: &mut Vec<Diagnostic>) {
     let mut seen: BTreeMap<String, Range<usize>> = BTreeMap::new();
     for (i, rule) in model.rules.iter().enumerate() {
         let mut bare = rule.rule.clone();
@@ -139,12 +139,12 @@ fn duplicate_rules(model: &Model, at: &At<'_>, findings: &mut Vec<Diagnostic>) {
 }
 
 /// The positions of the parts of a model.
-pub(super) struct At<'a> {
+pub(super) struct ModelPositions<'a> {
     model: &'a Model,
     spans: &'a Spans,
 }
 
-impl At<'_> {
+impl ModelPositions<'_> {
     pub(super) fn rule(&self, index: usize) -> Range<usize> {
         let rule = self.spans.rules.get(index);
         rule.map_or(0..0, |rule| rule.whole.clone())
@@ -181,7 +181,7 @@ impl At<'_> {
         })
     }
 
-    fn place(&self, one: &Uncovered) -> String {
+    fn place(&self, one: &UncoveredRegion) -> String {
         match one.sides.as_slice() {
             [] => String::from("anywhere"),
             sides => {
@@ -266,7 +266,7 @@ impl At<'_> {
         ))
     }
 
-    fn side(&self, side: &super::Side) -> String {
+    fn side(&self, side: &super::BoxSide) -> String {
         // An output that rules read is an input of these rules.
         let mut variables = self.model.variables();
         let input = variables.find(|input| input.name == side.input);
@@ -383,7 +383,7 @@ impl At<'_> {
             .help("move one of them, or use one term in all rules")
     }
 
-    fn hole(&self, one: &Hole) -> Diagnostic {
+    fn hole(&self, one: &TermGap) -> Diagnostic {
         let input = &one.input;
         let ends = self.variable(input);
         let at_end = ends.is_some_and(|(_, v)| one.low == v.low || one.high == v.high);

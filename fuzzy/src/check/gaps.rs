@@ -2,19 +2,19 @@
 
 use alloc::vec::Vec;
 
-use super::{Report, Side, TermOf, Uncovered};
+use super::{BoxSide, Report, TermOf, UncoveredRegion};
 
 /// A region without a rule, with the parts of it in which no rule fires at all. Both have the same cause and are
 /// reported together.
 pub(super) struct Gap<'r> {
-    pub(super) region: &'r Uncovered,
-    pub(super) silent: Vec<&'r Uncovered>,
+    pub(super) region: &'r UncoveredRegion,
+    pub(super) silent: Vec<&'r UncoveredRegion>,
 }
 
 /// Returns the gaps of a report. A region that no rule could cover because an input has no term there is reported as a
 /// hole instead.
 pub(super) fn gaps(report: &Report) -> Vec<Gap<'_>> {
-    let in_hole = |one: &Uncovered| {
+    let in_hole = |one: &UncoveredRegion| {
         one.sides.iter().any(|side| {
             let mut holes = report.holes.iter().filter(|hole| hole.input == side.input);
             let weak = one.missing.is_empty() && one.weak.contains(&side.input);
@@ -24,8 +24,8 @@ pub(super) fn gaps(report: &Report) -> Vec<Gap<'_>> {
             })
         })
     };
-    let within = |inner: &Uncovered, outer: &Uncovered| {
-        let contains = |outer: &Side| {
+    let within = |inner: &UncoveredRegion, outer: &UncoveredRegion| {
+        let contains = |outer: &BoxSide| {
             let mut sides = inner.sides.iter().filter(|side| side.input == outer.input);
             sides.any(|side| outer.low <= side.low && side.high <= outer.high)
         };

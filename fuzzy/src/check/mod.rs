@@ -36,16 +36,16 @@ mod terms;
 mod tests;
 mod trend;
 
-pub use accepted::Accepted;
-pub use coverage::{Antecedent, Side, Uncovered};
+pub use accepted::AcceptedFindings;
+pub use coverage::{Antecedent, BoxSide, UncoveredRegion};
 pub use extent::extent;
 pub use jumps::Jump;
 pub use monotone::{Counterexample, Direction, Monotone};
-pub use outer::Unreached;
+pub use outer::UnreachedTerm;
 pub use probe::Coordinate;
 pub use reach::Reach;
-pub use rules::{Contradiction, Subsumed};
-pub use terms::{EqualTerms, Hole, TermOf};
+pub use rules::{Contradiction, SubsumedRule};
+pub use terms::{EqualTerms, TermGap, TermOf};
 pub use trend::AgainstTrend;
 
 /// The options of the analysis.
@@ -84,14 +84,14 @@ impl Default for Options {
 #[non_exhaustive]
 pub struct Report {
     /// Boxes of the input space without a rule.
-    pub uncovered: Vec<Uncovered>,
+    pub uncovered: Vec<UncoveredRegion>,
     /// Whether the list is complete. In large rule sets the search stops early. No list is computed if NOT is applied
     /// to an interval type-2 term.
     pub uncovered_complete: bool,
     /// Rules with equal conditions and different conclusions, and rules that conclude two terms of the same output.
     pub contradictions: Vec<Contradiction>,
     /// Rules that have no effect because a more general rule fires at least as strongly.
-    pub subsumed: Vec<Subsumed>,
+    pub subsumed: Vec<SubsumedRule>,
     /// Rules that cannot fire for any input.
     #[cfg_attr(
         feature = "serde",
@@ -106,7 +106,7 @@ pub struct Report {
     /// Terms of a variable with the same membership function.
     pub equal_terms: Vec<EqualTerms>,
     /// Intervals of an input's range in which the degree of every term is 0.
-    pub holes: Vec<Hole>,
+    pub holes: Vec<TermGap>,
     /// The values that each output takes.
     pub reach: Vec<Reach>,
     /// Whether all selected points were evaluated. If evaluation is slow, the search stops early.
@@ -287,10 +287,10 @@ fn against_trend(stage: &Stage<'_>) -> Vec<AgainstTrend> {
 
 /// Returns the uncovered boxes of all outputs: first those in which no rule fires at all, then those in which no rule
 /// reaches the coverage. Outputs with the same boxes are listed once.
-fn all_uncovered(stages: &[Stage<'_>], coverage: f64) -> (Vec<Uncovered>, bool) {
-    let mut found: Vec<Uncovered> = Vec::new();
+fn all_uncovered(stages: &[Stage<'_>], coverage: f64) -> (Vec<UncoveredRegion>, bool) {
+    let mut found: Vec<UncoveredRegion> = Vec::new();
     let mut complete = true;
-    let mut shared = coverage::Shared::new();
+    let mut shared = coverage::SearchBudget::new();
     let mut known = alloc::vec![logic::Changes::new(); stages.len()];
     for level in [None, Some(coverage)] {
         let outputs = stages.iter().enumerate().flat_map(|(index, stage)| {
@@ -349,7 +349,7 @@ impl Report {
 
     /// Returns the entries of [`Model::allow`], each with the number of findings that it accepts.
     #[must_use]
-    pub fn accepted(&self, model: &Model) -> Vec<Accepted> {
+    pub fn accepted(&self, model: &Model) -> Vec<AcceptedFindings> {
         accepted::counted(self, model)
     }
 }

@@ -24,7 +24,7 @@ pub(super) const NEAR: f64 = 0.01;
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
-pub struct Unreached {
+pub struct UnreachedTerm {
     /// The name of the term.
     pub term: String,
     /// The peak of the term; for a plateau, the end that is nearer to the values of the output.
@@ -36,7 +36,11 @@ pub struct Unreached {
 /// Returns the outer terms that extend to the end of the range, are concluded by a rule, and whose peak is not reached
 /// even if only that rule fires; in the order of their peaks. A term that falls to 0 within the range is not reported,
 /// because its author chose its shape.
-pub(super) fn unreached(model: &Model, output: &Output, (low, high): (f64, f64)) -> Vec<Unreached> {
+pub(super) fn unreached(
+    model: &Model,
+    output: &Output,
+    (low, high): (f64, f64),
+) -> Vec<UnreachedTerm> {
     let variable = &output.variable;
     // The proposed numbers do not apply to two membership functions.
     if output.defuzzifier.is_weighted() || model.has_interval(output) {
@@ -59,7 +63,7 @@ pub(super) fn unreached(model: &Model, output: &Output, (low, high): (f64, f64))
                 && consequents.any(|c| c.output.text == variable.name && c.term.text == term.name)
         });
         let alone = alone(model, output, term).filter(|_| is_concluded)?;
-        ((alone - peak).abs() > near).then(|| Unreached {
+        ((alone - peak).abs() > near).then(|| UnreachedTerm {
             term: term.name.clone(),
             peak,
             alone,
@@ -116,7 +120,7 @@ fn alone(model: &Model, output: &Output, term: &Term) -> Option<f64> {
 }
 
 /// Returns a suggestion for changes after which the output reaches these terms.
-pub(super) fn remedies(model: &Model, output: &Output, unreached: &[Unreached]) -> String {
+pub(super) fn remedies(model: &Model, output: &Output, unreached: &[UnreachedTerm]) -> String {
     let Output {
         variable,
         defuzzifier,
@@ -193,7 +197,7 @@ fn listed(variable: &Variable, numbers: &[f64], write: impl Fn(f64) -> String) -
 
 /// Returns a range in which each of the terms on its own yields its peak; `None` if no range up to three times as wide
 /// does.
-fn widened(model: &Model, output: &Output, unreached: &[Unreached]) -> Option<[f64; 2]> {
+fn widened(model: &Model, output: &Output, unreached: &[UnreachedTerm]) -> Option<[f64; 2]> {
     let [low, high] = [output.variable.low, output.variable.high];
     let mut range = [low, high];
     for one in unreached {

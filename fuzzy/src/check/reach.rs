@@ -3,7 +3,7 @@
 use alloc::{string::String, vec::Vec};
 
 use super::{
-    outer::{Unreached, unreached},
+    outer::{UnreachedTerm, unreached},
     probe::{Coordinate, Probe},
 };
 
@@ -26,7 +26,7 @@ pub struct Reach {
     /// The range of the output.
     pub range: [f64; 2],
     /// The outer terms whose peak the output never reaches.
-    pub unreached: Vec<Unreached>,
+    pub unreached: Vec<UnreachedTerm>,
 }
 
 impl Probe<'_> {

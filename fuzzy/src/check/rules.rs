@@ -44,7 +44,7 @@ pub struct Contradiction {
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Subsumed {
+pub struct SubsumedRule {
     /// The rule without effect.
     #[cfg_attr(
         feature = "serde",
@@ -193,7 +193,7 @@ const MOST_COMPARISONS: usize = 100_000_000;
 
 /// Returns the rules that have no effect because a more general rule has the same block and conclusion. Equal rules are
 /// reported elsewhere.
-pub(super) fn subsumed(model: &Model) -> Vec<Subsumed> {
+pub(super) fn subsumed(model: &Model) -> Vec<SubsumedRule> {
     let mut numbers = Numbers::default();
     let mut groups: BTreeMap<(usize, String), Vec<Member>> = BTreeMap::new();
     // With any other aggregation, a rule adds to the result even if a more general rule fires.
@@ -234,7 +234,7 @@ pub(super) fn subsumed(model: &Model) -> Vec<Subsumed> {
             let wider = group.iter().find(|wide| {
                 wide.index != narrow.index && wide.weight >= narrow.weight && wide.includes(narrow)
             });
-            found.extend(wider.map(|wide| Subsumed {
+            found.extend(wider.map(|wide| SubsumedRule {
                 rule: narrow.index,
                 by: wide.index,
             }));

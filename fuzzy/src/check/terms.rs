@@ -21,7 +21,7 @@ pub struct TermOf {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
-pub struct Hole {
+pub struct TermGap {
     /// The name of the input.
     pub input: String,
     /// The lower end.
@@ -195,14 +195,14 @@ fn is_set(shape: &MembershipFunction, variable: &Variable) -> bool {
 }
 
 /// Returns the intervals in which every term of an input is 0. Only rules with NOT can cover such values.
-pub(super) fn holes(input: &Variable) -> Vec<Hole> {
+pub(super) fn holes(input: &Variable) -> Vec<TermGap> {
     if input.terms.is_empty() {
         // Only linear consequents read this input.
         return Vec::new();
     }
     let covered = |x: f64| input.terms.iter().any(|term| term.membership(x) > 0.0);
     let values = axis::values(input);
-    let mut found: Vec<Hole> = Vec::new();
+    let mut found: Vec<TermGap> = Vec::new();
     let mut start: Option<f64> = None;
     let mut before: Option<f64> = None;
     for &x in &values {
@@ -231,10 +231,10 @@ pub(super) fn holes(input: &Variable) -> Vec<Hole> {
 /// The relative width below which a hole is a single value with a rounding error.
 const THIN: f64 = 1e-9;
 
-fn hole(input: &Variable, low: f64, high: f64) -> Hole {
+fn hole(input: &Variable, low: f64, high: f64) -> TermGap {
     let is_thin = high - low <= THIN * (input.high - input.low);
     let high = if is_thin { low } else { high };
-    Hole {
+    TermGap {
         input: input.name.clone(),
         low,
         high,

@@ -122,7 +122,7 @@ rules: [IF heat IS cool THEN speed IS slow, IF heat IS hot THEN speed IS fast]
 #[test]
 fn findings_of_the_papers_rules() {
     let (report, findings) = report_of(paper(), &Options::default());
-    let boxes: Vec<&Uncovered> = report.uncovered.iter().filter(|one| !one.silent).collect();
+    let boxes: Vec<&UncoveredRegion> = report.uncovered.iter().filter(|one| !one.silent).collect();
     assert_eq!(boxes.len(), 1);
     let sides: Vec<_> = boxes[0]
         .sides
@@ -137,7 +137,7 @@ fn findings_of_the_papers_rules() {
         .collect();
     assert_eq!(missing, [["very_low", "low"], ["low", "low"]]);
     // Only on the line spread = 0 does no rule fire at all.
-    let silent: Vec<&Uncovered> = report.uncovered.iter().filter(|one| one.silent).collect();
+    let silent: Vec<&UncoveredRegion> = report.uncovered.iter().filter(|one| one.silent).collect();
     assert_eq!(silent.len(), 1);
     assert_eq!(
         (silent[0].sides[1].low, silent[0].sides[1].high),
@@ -378,11 +378,11 @@ fn an_output_that_is_read_counts_as_an_input_over_its_range() {
     let (report, findings) = report_of(&text, &options);
     assert_eq!(report.never_firing, [0]);
     assert_eq!(report.holes.len(), 1);
-    let Hole {
+    let TermGap {
         input, low, high, ..
     } = &report.holes[0];
     assert_eq!((input.as_str(), *low, *high), ("mid", 0.4, 0.6));
-    let silent: Vec<&Uncovered> = report.uncovered.iter().filter(|one| one.silent).collect();
+    let silent: Vec<&UncoveredRegion> = report.uncovered.iter().filter(|one| one.silent).collect();
     let [one] = silent.as_slice() else {
         panic!("{silent:?}");
     };

@@ -6,17 +6,21 @@ use crate::table::LEAST_STRENGTH;
 
 /// A degree, with its slope along the output's range.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Sloped {
+pub(super) struct SlopedDegree {
     pub(super) degree: f64,
     pub(super) slope: f64,
 }
 
 /// Returns the activated degree of a membership at a firing strength.
-pub(super) fn activate(implication: Implication, strength: f64, membership: Sloped) -> Sloped {
+pub(super) fn activate(
+    implication: Implication,
+    strength: f64,
+    membership: SlopedDegree,
+) -> SlopedDegree {
     let (h, m) = (strength, membership.degree);
     if implication == Implication::Drastic && 1.0 - h > LEAST_STRENGTH && membership.slope != 0.0 {
         // Only a single point of the peak remains above 0.
-        return Sloped::default();
+        return SlopedDegree::default();
     }
     let degree = implication.of(h, m);
     let by_membership = match implication {
@@ -42,14 +46,18 @@ pub(super) fn activate(implication: Implication, strength: f64, membership: Slop
         | Implication::Drastic
         | Implication::NilpotentMinimum => 0.0,
     };
-    Sloped {
+    SlopedDegree {
         degree,
         slope: by_membership * membership.slope,
     }
 }
 
 /// Returns the aggregation of two activated degrees.
-pub(super) fn aggregate(aggregation: Aggregation, a: Sloped, b: Sloped) -> Sloped {
+pub(super) fn aggregate(
+    aggregation: Aggregation,
+    a: SlopedDegree,
+    b: SlopedDegree,
+) -> SlopedDegree {
     let (x, y) = (a.degree, b.degree);
     let degree = aggregation.of(x, y);
     // The partial derivatives with respect to x and y.
@@ -82,7 +90,7 @@ pub(super) fn aggregate(aggregation: Aggregation, a: Sloped, b: Sloped) -> Slope
         | Aggregation::Drastic
         | Aggregation::NilpotentMaximum => (0.0, 0.0),
     };
-    Sloped {
+    SlopedDegree {
         degree,
         slope: by_x * a.slope + by_y * b.slope,
     }
@@ -195,8 +203,8 @@ mod tests {
     const DEGREES: [f64; 6] = [0.05, 0.2, 0.31, 0.52, 0.77, 0.93];
     const STEP: f64 = 1e-6;
 
-    fn sloped(degree: f64, slope: f64) -> Sloped {
-        Sloped { degree, slope }
+    fn sloped(degree: f64, slope: f64) -> SlopedDegree {
+        SlopedDegree { degree, slope }
     }
 
     #[test]

@@ -4,12 +4,12 @@
 
 use alloc::vec::Vec;
 
-use super::calculus::{Sloped, Smooth, activate, aggregate, between_levels, keeps_lines};
+use super::calculus::{SlopedDegree, Smooth, activate, aggregate, between_levels, keeps_lines};
 use super::maxima::{EQUAL, monotone};
 use super::piece::{Curve, Piece};
 use super::prepared::{corners, limits};
 use super::workspace::{STEPS_OF_A_CURVE, Workspace};
-use super::{Joint, Strengths};
+use super::{ConsequentOperators, Strengths};
 use crate::model::{Aggregation, Implication, MembershipFunction, Term};
 
 mod kinks;
@@ -44,7 +44,7 @@ pub(super) struct Run {
 
 /// A term activated at a firing strength, on an interval.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Part {
+pub(super) struct ActivatedTerm {
     term: usize,
     strength: f64,
     implication: Implication,
@@ -120,15 +120,20 @@ impl Curves {
     }
 
     /// Returns the degree of the aggregated set at `x`.
-    pub(crate) fn degree(&self, strengths: Strengths<'_>, joint: Joint, x: f64) -> f64 {
+    pub(crate) fn degree(
+        &self,
+        strengths: Strengths<'_>,
+        operators: ConsequentOperators,
+        x: f64,
+    ) -> f64 {
         let mut degree = 0.0;
         for (index, term) in self.terms.iter().enumerate() {
             let mut membership = None;
             for &strength in strengths.of(index) {
                 if strength > 0.0 {
                     let membership = *membership.get_or_insert_with(|| term.membership(x));
-                    let cut = joint.implication.of(strength, membership);
-                    degree = joint.aggregation.of(degree, cut);
+                    let cut = operators.implication.of(strength, membership);
+                    degree = operators.aggregation.of(degree, cut);
                 }
             }
         }
@@ -139,7 +144,7 @@ impl Curves {
     pub(crate) fn pieces(
         &self,
         strengths: Strengths<'_>,
-        joint: Joint,
+        operators: ConsequentOperators,
         workspace: &mut Workspace,
         visit: &mut dyn FnMut(&Piece<'_>),
     ) {
@@ -148,7 +153,7 @@ impl Curves {
         let mut from = cuts.next().map_or(0.0, |cut| cut.0);
         for &(to, term) in cuts {
             if to > from && term.is_none_or(is_active) {
-                self.stretch(strengths, joint, (from, to), workspace, visit);
+                self.stretch(strengths, operators, (from, to), workspace, visit);
                 from = to;
             }
         }
@@ -158,13 +163,13 @@ impl Curves {
     fn stretch(
         &self,
         strengths: Strengths<'_>,
-        joint: Joint,
+        operators: ConsequentOperators,
         (from, to): (f64, f64),
         workspace: &mut Workspace,
         visit: &mut dyn FnMut(&Piece<'_>),
     ) {
         self.runs(strengths, (from, to), &mut workspace.runs);
-        let all_known = self.kinks(strengths, joint, (from, to), workspace);
+        let all_known = self.kinks(strengths, operators, (from, to), workspace);
         let Workspace {
             cuts,
             runs,
@@ -172,12 +177,12 @@ impl Curves {
             steps,
             ..
         } = workspace;
-        let smooth = Smooth::of(joint.aggregation);
+        let smooth = Smooth::of(operators.aggregation);
         let has_steps = all_known && smooth.has_steps;
         // The branch of an operator with a step is the same on the whole piece.
         let aggregation = match has_steps {
             true => smooth.aggregation,
-            false => joint.aggregation,
+            false => operators.aggregation,
         };
         for (&from, &to) in cuts.iter().zip(cuts.iter().skip(1)) {
             let width = to - from;
@@ -186,7 +191,7 @@ impl Curves {
             }
             self.parts(
                 strengths,
-                joint.implication,
+                operators.implication,
                 (from, to),
                 all_known,
                 (runs, parts),
@@ -194,10 +199,10 @@ impl Curves {
             if !steps.take(strengths.strengths.len() + parts.len() * STEPS_OF_A_CURVE) {
                 return;
             }
-            let is_level = |part: &Part| part.line.is_some_and(|line| line.is_level());
+            let is_level = |part: &ActivatedTerm| part.line.is_some_and(|line| line.is_level());
             let are_level = parts.iter().all(is_level);
             if are_level || has_steps {
-                let degree = self.joined(parts, joint.aggregation, from + 0.5 * width);
+                let degree = self.joined(parts, operators.aggregation, from + 0.5 * width);
                 if are_level || degree == 1.0 {
                     visit(&Piece {
                         from,
@@ -259,12 +264,12 @@ impl Curves {
         implication: Implication,
         (from, to): (f64, f64),
         all_known: bool,
-        (runs, parts): (&[Run], &mut Vec<Part>),
+        (runs, parts): (&[Run], &mut Vec<ActivatedTerm>),
     ) {
         parts.clear();
         for run in runs {
             for &strength in strengths.of(run.term).iter().filter(|h| **h > 0.0) {
-                let part = Part {
+                let part = ActivatedTerm {
                     term: run.term,
                     strength,
                     implication,
@@ -280,10 +285,15 @@ impl Curves {
     }
 
     /// Returns an activated term on a piece where its implication has neither a kink nor a step; `None` where it is 0.
-    fn on_piece(&self, part: Part, run: &Run, (from, to): (f64, f64)) -> Option<Part> {
+    fn on_piece(
+        &self,
+        part: ActivatedTerm,
+        run: &Run,
+        (from, to): (f64, f64),
+    ) -> Option<ActivatedTerm> {
         let ends = run.line.map(|line| (line.at(from), line.at(to)));
         let membership = match ends {
-            Some((left, right)) => Sloped {
+            Some((left, right)) => SlopedDegree {
                 degree: 0.5 * (left + right),
                 slope: right - left,
             },
@@ -319,13 +329,19 @@ impl Curves {
     }
 
     /// Returns the degree of the aggregated set of parts.
-    fn joined(&self, parts: &[Part], aggregation: Aggregation, x: f64) -> f64 {
+    fn joined(&self, parts: &[ActivatedTerm], aggregation: Aggregation, x: f64) -> f64 {
         self.joined_at(parts, aggregation, x, x)
     }
 
     /// Returns the degree at the end `x` of a piece. Lines use their degree at the end; curves are evaluated just
     /// `inside`.
-    fn joined_at(&self, parts: &[Part], aggregation: Aggregation, x: f64, inside: f64) -> f64 {
+    fn joined_at(
+        &self,
+        parts: &[ActivatedTerm],
+        aggregation: Aggregation,
+        x: f64,
+        inside: f64,
+    ) -> f64 {
         let (mut degree, mut known) = (0.0, None);
         for part in parts {
             let activated = match part.line {
@@ -345,18 +361,18 @@ impl Curves {
     }
 
     /// Returns the slope of the aggregated set of parts; `width` is the width of the piece.
-    fn slope(&self, parts: &[Part], aggregation: Aggregation, x: f64, width: f64) -> f64 {
-        let mut set = Sloped::default();
+    fn slope(&self, parts: &[ActivatedTerm], aggregation: Aggregation, x: f64, width: f64) -> f64 {
+        let mut set = SlopedDegree::default();
         for part in parts {
             let activated = match (part.line, self.terms.get(part.term)) {
-                (Some(line), _) => Sloped {
+                (Some(line), _) => SlopedDegree {
                     degree: line.at(x),
                     slope: (line.right - line.left) / (line.to - line.from),
                 },
                 (None, Some(term)) => {
                     activate(part.implication, part.strength, sloped(term, x, width))
                 }
-                (None, None) => Sloped::default(),
+                (None, None) => SlopedDegree::default(),
             };
             set = aggregate(aggregation, set, activated);
         }
@@ -382,8 +398,8 @@ pub(super) fn is_formula(term: &Term) -> bool {
 }
 
 /// Returns the membership of a term at `x` with its slope; `width` is the width of the piece.
-fn sloped(term: &Term, x: f64, width: f64) -> Sloped {
-    Sloped {
+fn sloped(term: &Term, x: f64, width: f64) -> SlopedDegree {
+    SlopedDegree {
         degree: term.membership(x),
         slope: term.height * term.membership_function.slope(x, width),
     }

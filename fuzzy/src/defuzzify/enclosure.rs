@@ -6,9 +6,9 @@
 use alloc::vec::Vec;
 
 use super::piece::{Integrals, Piece, unit};
-use super::reduction::{Reduction, Set, Weighted, average, has_area, sum};
+use super::reduction::{Reduction, Set, WeightedNumber, average, has_area, sum};
 use super::workspace::Workspace;
-use super::{Joint, Strengths};
+use super::{ConsequentOperators, Strengths};
 use crate::model::{Defuzzifier, Output, Term, TypeReduction};
 use crate::table::{
     finite,
@@ -23,7 +23,7 @@ const EQUAL: f64 = 1e-9;
 
 /// The enclosure of the values of an output.
 #[derive(Debug, Clone)]
-pub(crate) struct Enclosing {
+pub(crate) struct EnclosureMethod {
     method: Method,
     /// Whether an end may be anywhere in the support, because the type reduction only approximates the interval.
     is_wide: bool,
@@ -44,16 +44,16 @@ enum Method {
 
 /// An interval of values, and whether each of the firing strengths gives a value.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Enclosed {
+pub(crate) struct ValueEnclosure {
     pub(crate) low: f64,
     pub(crate) high: f64,
     pub(crate) is_certain: bool,
 }
 
-impl Enclosing {
+impl EnclosureMethod {
     /// Creates the enclosure of an output of a valid model.
-    pub(crate) fn new(output: &Output, joint: Joint) -> Self {
-        let reduction = Reduction::new(output, joint);
+    pub(crate) fn new(output: &Output, operators: ConsequentOperators) -> Self {
+        let reduction = Reduction::new(output, operators);
         let method = match (output.defuzzifier, reduction) {
             (Defuzzifier::Tsukamoto, _) => Method::Tsukamoto(output.variable.terms.clone()),
             (_, reduction) if output.samples.is_some() => Method::Support(reduction),
@@ -70,7 +70,7 @@ impl Enclosing {
             ) => Method::Reduced(reduction),
             (_, reduction) => Method::Support(reduction),
         };
-        Enclosing {
+        EnclosureMethod {
             method,
             is_wide: output.type_reduction == TypeReduction::WuMendel,
             low: output.variable.low,
@@ -95,9 +95,9 @@ impl Enclosing {
         upper: Strengths<'_>,
         number: impl Fn(usize) -> (f64, f64),
         workspace: &mut Workspace,
-        points: &mut Vec<Weighted>,
-    ) -> Option<Enclosed> {
-        let found = |(low, high): (f64, f64), is_certain: bool| Enclosed {
+        points: &mut Vec<WeightedNumber>,
+    ) -> Option<ValueEnclosure> {
+        let found = |(low, high): (f64, f64), is_certain: bool| ValueEnclosure {
             low,
             high,
             is_certain,
@@ -187,12 +187,12 @@ type Number = ((f64, f64), (f64, f64));
 /// Returns the ends of the averages or sums of numbers. Both never decrease when a number increases.
 fn weighted(
     numbers: &[Number],
-    reduce: fn(&[Weighted]) -> Option<(f64, f64)>,
-    points: &mut Vec<Weighted>,
+    reduce: fn(&[WeightedNumber]) -> Option<(f64, f64)>,
+    points: &mut Vec<WeightedNumber>,
 ) -> Option<(f64, f64)> {
     let mut ends = |at: fn(&(f64, f64)) -> f64| {
         points.clear();
-        points.extend(numbers.iter().map(|(ends, (lower, upper))| Weighted {
+        points.extend(numbers.iter().map(|(ends, (lower, upper))| WeightedNumber {
             at: at(ends),
             lower: *lower,
             upper: *upper,
@@ -220,7 +220,9 @@ impl Set {
     fn lower_area(&self, lower: Strengths<'_>, workspace: &mut Workspace) -> f64 {
         let mut whole = Integrals::about(self.low, unit(self.high - self.low));
         self.lower
-            .pieces(lower, self.joint, workspace, &mut |piece| whole.add(piece));
+            .pieces(lower, self.operators, workspace, &mut |piece| {
+                whole.add(piece)
+            });
         whole.area
     }
 
@@ -249,11 +251,11 @@ impl Set {
                 false => (&mut right, &mut left),
             };
             self.upper
-                .pieces(upper, self.joint, workspace, &mut |piece| {
+                .pieces(upper, self.operators, workspace, &mut |piece| {
                     upper_part.add_between(piece, of_upper);
                 });
             self.lower
-                .pieces(lower, self.joint, workspace, &mut |piece| {
+                .pieces(lower, self.operators, workspace, &mut |piece| {
                     lower_part.add_between(piece, of_lower);
                 });
             // The bisector is left of x.
@@ -274,13 +276,15 @@ impl Set {
     ) -> Option<(f64, f64)> {
         let mut level = 0.0;
         self.lower
-            .pieces(lower, self.joint, workspace, &mut |piece| {
+            .pieces(lower, self.operators, workspace, &mut |piece| {
                 level = larger(level, larger(piece.left, piece.right));
             });
         let level = level * (1.0 - EQUAL);
         let mut ends: Option<(f64, f64)> = None;
         self.upper
-            .pieces(upper, self.joint, workspace, &mut |piece: &Piece<'_>| {
+            .pieces(upper, self.operators, workspace, &mut |piece: &Piece<
+                '_,
+            >| {
                 // The highest degree of a curve is not known.
                 let is_high = piece.curve.is_some() || larger(piece.left, piece.right) >= level;
                 if has_area(piece) && is_high {

@@ -1,21 +1,21 @@
 //! Outputs without a closed form, whose aggregated set is integrated, sampled or summed in each evaluation.
 
 use super::curves::Curves;
-use super::maxima::{Highest, Maxima};
+use super::maxima::{HighestDegree, Maxima};
 use super::piece::{Integrals, Piece, unit};
 use super::singletons::Singletons;
 use super::workspace::Workspace;
-use super::{Joint, Strengths};
+use super::{ConsequentOperators, Strengths};
 use crate::model::{Output, Sampling};
 use crate::table::SetDefuzzifier;
 use crate::table::operators::{larger, smaller};
 
 /// A fuzzy output without a closed form.
 #[derive(Debug, Clone)]
-pub(crate) struct Integrated {
+pub(crate) struct IntegratedSet {
     low: f64,
     high: f64,
-    joint: Joint,
+    operators: ConsequentOperators,
     defuzzifier: SetDefuzzifier,
     set: Set,
 }
@@ -30,8 +30,12 @@ enum Set {
     Singletons(Singletons),
 }
 
-impl Integrated {
-    pub(crate) fn new(output: &Output, joint: Joint, defuzzifier: SetDefuzzifier) -> Self {
+impl IntegratedSet {
+    pub(crate) fn new(
+        output: &Output,
+        operators: ConsequentOperators,
+        defuzzifier: SetDefuzzifier,
+    ) -> Self {
         let (low, high) = (output.variable.low, output.variable.high);
         let curves = || Curves::new(&output.variable.terms, low, high);
         let set = match (Singletons::new(output), output.samples) {
@@ -39,10 +43,10 @@ impl Integrated {
             (None, Some(sampling)) => Set::Samples(sampling, curves()),
             (None, None) => Set::Pieces(curves()),
         };
-        Integrated {
+        IntegratedSet {
             low,
             high,
-            joint,
+            operators,
             defuzzifier,
             set,
         }
@@ -62,7 +66,7 @@ impl Integrated {
         let value = match &self.set {
             Set::Pieces(curves) => self.exact(
                 |workspace, visit| {
-                    curves.pieces(strengths, self.joint, workspace, visit);
+                    curves.pieces(strengths, self.operators, workspace, visit);
                 },
                 workspace,
             ),
@@ -72,11 +76,11 @@ impl Integrated {
                     return None;
                 }
                 sampling.value(self.defuzzifier, (self.low, self.high), |x| {
-                    curves.degree(strengths, self.joint, x)
+                    curves.degree(strengths, self.operators, x)
                 })
             }
             Set::Singletons(singletons) => {
-                singletons.value(strengths, self.joint, self.defuzzifier)
+                singletons.value(strengths, self.operators, self.defuzzifier)
             }
         }?;
         Some(larger(self.low, smaller(self.high, value)))
@@ -112,7 +116,7 @@ impl Integrated {
                 bisector.filter(|_| whole.area > 0.0)
             }
             SetDefuzzifier::Maxima(which) => {
-                let mut highest = Highest::default();
+                let mut highest = HighestDegree::default();
                 pieces(workspace, &mut |piece| highest.see(piece));
                 let mut maxima = Maxima::of(highest);
                 pieces(workspace, &mut |piece| maxima.see(piece));

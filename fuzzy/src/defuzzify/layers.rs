@@ -2,12 +2,12 @@
 
 use alloc::{collections::BTreeMap, vec::Vec};
 
-use super::Prepared;
-use crate::table::{Base, Kind, Layers, Strand};
+use super::PreparedSet;
+use crate::table::{Base, Layers, ShapeKind, Strand};
 
 /// The closed form of the centroid of the maximum of straight terms that are cut.
 #[derive(Debug, Clone)]
-pub(crate) struct Layered {
+pub(crate) struct PreparedLayers {
     pub(crate) bases: Vec<Base>,
     pub(crate) layers: Vec<Layers>,
 }
@@ -19,7 +19,7 @@ const MOST_PARTS: usize = 1024;
 const LEAST_DIFFERENCE: f64 = 1e-100;
 
 /// A part of the range on which a term is straight and the same terms are above it.
-struct Part {
+struct LayerSegment {
     flank: u32,
     strength: u32,
     /// The indices of the firing strengths of the terms above this part, in ascending order.
@@ -29,11 +29,14 @@ struct Part {
     to: (f64, f64),
 }
 
-impl Layered {
+impl PreparedLayers {
     /// Converts a set whose sections are those of the minimum; `about` is the origin of moments and the unit of length.
     /// `None` if a term is curved or there would be too many layers.
-    pub(crate) fn new(prepared: &Prepared, about: (f64, f64)) -> Option<Self> {
-        let is_straight = prepared.flanks.iter().all(|f| f.kind == Kind::PIECEWISE);
+    pub(crate) fn new(prepared: &PreparedSet, about: (f64, f64)) -> Option<Self> {
+        let is_straight = prepared
+            .flanks
+            .iter()
+            .all(|f| f.kind == ShapeKind::PIECEWISE);
         if !is_straight {
             return None;
         }
@@ -55,7 +58,7 @@ impl Layered {
         if bases.bases.len() > MOST_PARTS {
             return None;
         }
-        Some(Layered {
+        Some(PreparedLayers {
             bases: bases.bases,
             layers,
         })
@@ -64,21 +67,21 @@ impl Layered {
 
 /// Returns the parts of all terms: those of the sections, merged if nothing changes between them. `None` if there are
 /// too many.
-fn parts(prepared: &Prepared) -> Option<Vec<Part>> {
-    let mut parts: Vec<Part> = Vec::new();
+fn parts(prepared: &PreparedSet) -> Option<Vec<LayerSegment>> {
+    let mut parts: Vec<LayerSegment> = Vec::new();
     for section in &prepared.sections {
         let strands: &[Strand] = prepared
             .strands
             .get(section.first_strand as usize..section.end_strand as usize)?;
         let mut above = Vec::new();
         for strand in strands {
-            let is_same = |part: &&mut Part| {
+            let is_same = |part: &&mut LayerSegment| {
                 part.flank == strand.flank && part.to.0 == section.from && part.above == above
             };
             let to = (section.to, strand.right);
             match parts.iter_mut().rev().find(is_same) {
                 Some(part) => part.to = to,
-                None => parts.push(Part {
+                None => parts.push(LayerSegment {
                     flank: strand.flank,
                     strength: strand.strength,
                     above: above.clone(),
@@ -97,7 +100,7 @@ fn parts(prepared: &Prepared) -> Option<Vec<Part>> {
     Some(parts)
 }
 
-impl Part {
+impl LayerSegment {
     /// Writes the numbers of a layer, which has an index among the four; `None` if they would overflow.
     fn write(&self, (origin, unit): (f64, f64), index: usize, four: &mut Layers) -> Option<()> {
         let ((from, left), (to, right)) = (self.from, self.to);

@@ -4,16 +4,16 @@ use alloc::vec::Vec;
 
 use super::piece::Piece;
 use crate::model::MembershipFunction;
-use crate::table::{Kind, OfMaxima, numeric::root, set::Maxima as Values};
+use crate::table::{OfMaxima, ShapeKind, numeric::root, set::Maxima as Values};
 
 /// The relative difference up to which degrees count as equal; rounding errors are smaller.
 pub(super) const EQUAL: f64 = 1e-12;
 
 /// The highest degree so far.
 #[derive(Debug, Default, Clone, Copy)]
-pub(crate) struct Highest(pub(crate) f64);
+pub(crate) struct HighestDegree(pub(crate) f64);
 
-impl Highest {
+impl HighestDegree {
     pub(crate) fn see(&mut self, piece: &Piece<'_>) {
         self.0 = self.0.max(piece.left).max(piece.right);
         let mut highest = self.0;
@@ -28,12 +28,12 @@ pub(crate) struct Maxima {
     least_degree: f64,
     values: Values,
     /// The end of the previous piece.
-    before: End,
+    before: PieceEnd,
 }
 
 /// The end of a piece.
 #[derive(Debug, Default, Clone, Copy)]
-struct End {
+struct PieceEnd {
     x: f64,
     degree: f64,
     /// Whether the piece rises towards its end.
@@ -41,7 +41,7 @@ struct End {
 }
 
 impl Maxima {
-    pub(crate) fn of(highest: Highest) -> Self {
+    pub(crate) fn of(highest: HighestDegree) -> Self {
         Maxima {
             least_degree: highest.0 * (1.0 - EQUAL),
             ..Maxima::default()
@@ -95,7 +95,7 @@ impl Maxima {
                 self.point(last);
             }
         }
-        self.before = End {
+        self.before = PieceEnd {
             x: piece.to,
             degree: piece.right,
             rises: !is_plateau && rises_last && right,
@@ -168,7 +168,9 @@ pub(super) fn monotone(shape: &MembershipFunction, low: f64, high: f64) -> Vec<f
     cuts.extend([low, high]);
     sort(&mut cuts);
     // All other shapes have extrema only at their cuts.
-    if let Kind::SIGMOID_DIFFERENCE | Kind::SIGMOID_PRODUCT | Kind::GAUSSIAN2 = shape.kind().0 {
+    if let ShapeKind::SIGMOID_DIFFERENCE | ShapeKind::SIGMOID_PRODUCT | ShapeKind::GAUSSIAN2 =
+        shape.kind().0
+    {
         let mut turning = Vec::new();
         for (&from, &to) in cuts.iter().zip(cuts.iter().skip(1)) {
             let width = to - from;

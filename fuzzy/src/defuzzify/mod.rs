@@ -8,12 +8,12 @@
 //!   area `5 h - 2.5 h^2`; its overlap with `medium` is 5 wide around 2.5.
 //! - [`Moments`](Method::Moments): the area and moment of each term about the middle, 5. `low` has the area 2.5 and,
 //!   with its centroid at 5/3, the moment `2.5 (5/3 - 5) = -8.33`.
-//! - [`Prepared`]: each term is split into flanks, which only rise or only fall: one for `low`, two for `medium`, one
+//! - [`PreparedSet`]: each term is split into flanks, which only rise or only fall: one for `low`, two for `medium`, one
 //!   for `high`. The range is split where two flanks cross, at 2.5 and 7.5, and where they end, at 5. On each of the
 //!   four sections, one of the two flanks is always the higher one.
-//! - [`Layered`]: on each section, the area between the strengths of the terms that are higher there and a term's own
-//!   strength.
-//! - [`Integrated`]: only the terms and their corners, 0, 5 and 10. The aggregated set is split into pieces in each
+//! - [`PreparedLayers`]: on each section, the area between the strengths of the terms that are higher there and a term's
+//!   own strength.
+//! - [`IntegratedSet`]: only the terms and their corners, 0, 5 and 10. The aggregated set is split into pieces in each
 //!   evaluation.
 //! - [`Reduction`]: the same for the lower and the upper membership functions of an interval type-2 output.
 
@@ -22,13 +22,13 @@ use alloc::vec::Vec;
 use crate::model::{Aggregation, Implication, Output, Term};
 use crate::table::Moment;
 use curves::Curves;
-pub(crate) use enclosure::Enclosing;
-pub(crate) use integrated::Integrated;
-pub(crate) use layers::Layered;
+pub(crate) use enclosure::EnclosureMethod;
+pub(crate) use integrated::IntegratedSet;
+pub(crate) use layers::PreparedLayers;
 pub(crate) use partition::Partition;
 pub(crate) use piece::unit;
-pub(crate) use prepared::{Prepared, corners, straight};
-pub(crate) use reduction::{Reduction, Weighted};
+pub(crate) use prepared::{PreparedSet, corners, straight};
+pub(crate) use reduction::{Reduction, WeightedNumber};
 pub(crate) use weighted::Consequents;
 
 mod calculus;
@@ -49,7 +49,7 @@ pub(crate) mod workspace;
 
 /// The operators that activate and aggregate consequents.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Joint {
+pub(crate) struct ConsequentOperators {
     pub(crate) implication: Implication,
     pub(crate) aggregation: Aggregation,
 }
@@ -77,13 +77,13 @@ pub(crate) enum Method {
     /// The centroid of the maximum over a partition.
     Partition(Partition),
     /// The centroid of the maximum of straight terms that are cut.
-    Layered(Layered),
+    Layered(PreparedLayers),
     /// The centroid of a sum of products: the area and moment of each term at a firing strength of 1.
     Moments(Vec<Moment>),
     /// A set with known flanks and sections.
-    Prepared(Prepared),
+    Prepared(PreparedSet),
     /// A set without a closed form.
-    Integrated(Integrated),
+    Integrated(IntegratedSet),
     /// Takagi-Sugeno: the mean of the consequents weighted by firing strengths, or their sum.
     Sugeno {
         consequents: Consequents,

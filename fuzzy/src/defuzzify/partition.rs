@@ -167,7 +167,7 @@ mod tests {
     use crate::defuzzify::curves::Curves;
     use crate::defuzzify::piece::Integrals;
     use crate::defuzzify::workspace::Workspace;
-    use crate::defuzzify::{Joint, Strengths};
+    use crate::defuzzify::{ConsequentOperators, Strengths};
     use crate::model::{Aggregation, Implication, MembershipFunction, Variable};
     use crate::table::centroid;
     use proptest::prelude::*;
@@ -243,14 +243,14 @@ mod tests {
             let fast = centroid(area, moment, origin);
             let offsets: Vec<usize> = (0..=count).collect();
             let mut slow = Integrals::about(origin, 1.0);
-            let joint = Joint {
+            let operators = ConsequentOperators {
                 implication: if scales { Implication::Product } else { Implication::Minimum },
                 aggregation: Aggregation::Maximum,
             };
             let strengths = Strengths { strengths, offsets: &offsets };
             let curves = Curves::new(&variable.terms, low, high);
             let mut workspace = Workspace::new(count, 5 * count + curves.workspace());
-            curves.pieces(strengths, joint, &mut workspace, &mut |piece| slow.add(piece));
+            curves.pieces(strengths, operators, &mut workspace, &mut |piece| slow.add(piece));
             match (fast, slow.centroid()) {
                 (Some(fast), Some(slow)) => {
                     prop_assert!((fast - slow).abs() <= 1e-12 * (variable.high - variable.low));

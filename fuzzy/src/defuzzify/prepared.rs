@@ -5,8 +5,10 @@ use alloc::vec::Vec;
 use super::{curves::is_formula, piece::power_of_two};
 use crate::model::{MembershipFunction, Term};
 use crate::table::flank::Measure;
-use crate::table::{Flank, FuzzySet, Kind, Knot, Moment, Section, SetDefuzzifier, SetTerm, Strand};
-use crossings::Couple;
+use crate::table::{
+    Flank, FuzzySet, Knot, Moment, Section, SetDefuzzifier, SetTerm, ShapeKind, Strand,
+};
+use crossings::FlankPair;
 pub(super) use stretches::limits;
 use stretches::{Stretch, curved, knots};
 pub(crate) use stretches::{corners, straight};
@@ -16,7 +18,7 @@ mod stretches;
 
 /// A prepared set. All indices refer to its own arrays.
 #[derive(Debug, Clone)]
-pub(crate) struct Prepared {
+pub(crate) struct PreparedSet {
     pub(crate) set: FuzzySet,
     /// Whether terms are scaled by their firing strengths; otherwise they are cut.
     pub(crate) scales: bool,
@@ -35,7 +37,7 @@ const MOST_TERMS: usize = 64;
 const MOST_FLANKS: usize = 512;
 const MOST_KNOTS: usize = 1024;
 
-impl Prepared {
+impl PreparedSet {
     /// Prepares a set of terms that are scaled by their firing strengths or cut at them, and aggregated by sum or
     /// maximum. `None` if a term is a formula, or the set would be too large.
     pub(crate) fn new(
@@ -51,7 +53,7 @@ impl Prepared {
             origin: low + 0.5 * (high - low),
             unit: power_of_two(high - low),
         };
-        let mut prepared = Prepared {
+        let mut prepared = PreparedSet {
             set: FuzzySet {
                 unit: measure.unit,
                 defuzzifier: defuzzifier.code(),
@@ -136,14 +138,14 @@ impl Prepared {
             area: 0.0,
             moment: 0.0,
             beyond: 0.0,
-            kind: Kind::PIECEWISE,
+            kind: ShapeKind::PIECEWISE,
             first_knot,
             end_knot: first_knot,
         };
         if stretch.is_curved {
             (flank.kind, flank.parameters) = kind(&term.membership_function, flank.rises());
             // The tail of a wider Gaussian is mostly outside the range, which would lose digits.
-            if flank.kind == Kind::GAUSSIAN && flank.parameters[1] <= measure.unit {
+            if flank.kind == ShapeKind::GAUSSIAN && flank.parameters[1] <= measure.unit {
                 let foot = if flank.rises() { from } else { to };
                 flank.beyond = flank.beyond_of(foot, measure);
             } else {
@@ -169,7 +171,7 @@ impl Prepared {
             for (j, other) in self.terms.iter().enumerate().skip(i + 1) {
                 for a in self.flanks_of(one) {
                     for b in self.flanks_of(other) {
-                        let pair = Couple::new(a, b);
+                        let pair = FlankPair::new(a, b);
                         if pair.from < pair.to {
                             pair.cuts([&seeds[i], &seeds[j]], self.scales, &mut cuts);
                         }
@@ -245,13 +247,13 @@ fn degree(flank: &Flank, x: f64) -> f64 {
 }
 
 /// Returns the formula of a flank. For two-sided shapes it is that of one side.
-fn kind(shape: &MembershipFunction, rises: bool) -> (Kind, [f64; 4]) {
+fn kind(shape: &MembershipFunction, rises: bool) -> (ShapeKind, [f64; 4]) {
     match (shape.kind(), rises) {
-        ((Kind::GAUSSIAN2, [mean, sd, right, _]), true) if mean <= right => {
-            (Kind::GAUSSIAN, [mean, sd, 0.0, 0.0])
+        ((ShapeKind::GAUSSIAN2, [mean, sd, right, _]), true) if mean <= right => {
+            (ShapeKind::GAUSSIAN, [mean, sd, 0.0, 0.0])
         }
-        ((Kind::GAUSSIAN2, [left, _, mean, sd]), false) if left <= mean => {
-            (Kind::GAUSSIAN, [mean, sd, 0.0, 0.0])
+        ((ShapeKind::GAUSSIAN2, [left, _, mean, sd]), false) if left <= mean => {
+            (ShapeKind::GAUSSIAN, [mean, sd, 0.0, 0.0])
         }
         (other, _) => other,
     }

@@ -23,7 +23,7 @@ use super::closed_reduction::{Summary, closed};
 use super::curves::Curves;
 use super::piece::{Integrals, Piece, unit};
 use super::workspace::Workspace;
-use super::{Joint, Strengths};
+use super::{ConsequentOperators, Strengths};
 use crate::model::{Defuzzifier, Output, Term, TypeReduction, type2::Bound};
 use crate::table::operators::{larger, smaller};
 
@@ -37,7 +37,7 @@ pub(crate) enum Reduction {
     /// The centroid of a fuzzy set.
     Set(Box<Set>),
     /// The centroid of singletons.
-    Singletons(Vec<Singleton>, Joint),
+    Singletons(Vec<Singleton>, ConsequentOperators),
     /// Takagi-Sugeno: the weighted average of numbers.
     Average,
     /// Takagi-Sugeno: the weighted sum of numbers.
@@ -49,7 +49,7 @@ pub(crate) enum Reduction {
 pub(crate) struct Set {
     pub(super) low: f64,
     pub(super) high: f64,
-    pub(super) joint: Joint,
+    pub(super) operators: ConsequentOperators,
     pub(super) lower: Curves,
     pub(super) upper: Curves,
 }
@@ -65,7 +65,7 @@ pub(crate) struct Singleton {
 
 /// A number with the bounds of its weight.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Weighted {
+pub(crate) struct WeightedNumber {
     pub(super) at: f64,
     pub(super) lower: f64,
     pub(super) upper: f64,
@@ -76,14 +76,14 @@ type Line = [f64; 4];
 
 /// An end of the interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum End {
+enum IntervalEnd {
     Left,
     Right,
 }
 
 impl Reduction {
     /// Creates the type reduction of an output of a valid model.
-    pub(crate) fn new(output: &Output, joint: Joint) -> Self {
+    pub(crate) fn new(output: &Output, operators: ConsequentOperators) -> Self {
         let terms = &output.variable.terms;
         match output.defuzzifier {
             Defuzzifier::WeightedSum => return Reduction::Sum,
@@ -106,7 +106,7 @@ impl Reduction {
             });
             let mut points: Vec<Singleton> = points.collect();
             points.sort_by(|a, b| a.at.total_cmp(&b.at).then(a.term.cmp(&b.term)));
-            return Reduction::Singletons(points, joint);
+            return Reduction::Singletons(points, operators);
         }
         let (low, high) = (output.variable.low, output.variable.high);
         let curves = |bound: Bound| {
@@ -116,7 +116,7 @@ impl Reduction {
         let set = Set {
             low,
             high,
-            joint,
+            operators,
             lower: curves(Bound::Lower),
             upper: curves(Bound::Upper),
         };
@@ -140,7 +140,7 @@ impl Reduction {
         upper: Strengths<'_>,
         number: impl Fn(usize) -> f64,
         workspace: &mut Workspace,
-        points: &mut Vec<Weighted>,
+        points: &mut Vec<WeightedNumber>,
     ) -> Option<(f64, f64)> {
         points.clear();
         let (left, right) = match self {
@@ -151,16 +151,16 @@ impl Reduction {
                 let summary = set.summary(lower, upper, workspace, &mut |_, _| {})?;
                 closed(method, summary)?
             }
-            Reduction::Singletons(singletons, joint) => {
+            Reduction::Singletons(singletons, operators) => {
                 points.extend(singletons.chunk_by(|a, b| a.at == b.at).filter_map(|same| {
                     let degree = |strengths: Strengths<'_>, height: fn(&Singleton) -> f64| {
                         let of = |one| strengths.of(one).iter().filter(|h| **h > 0.0);
                         let parts = same.iter().flat_map(|one| {
-                            of(one.term).map(|h| joint.implication.of(*h, height(one)))
+                            of(one.term).map(|h| operators.implication.of(*h, height(one)))
                         });
-                        parts.fold(0.0, |all, part| joint.aggregation.of(all, part))
+                        parts.fold(0.0, |all, part| operators.aggregation.of(all, part))
                     };
-                    Some(Weighted {
+                    Some(WeightedNumber {
                         at: same.first()?.at,
                         lower: degree(lower, |one| one.lower_height),
                         upper: degree(upper, |one| one.upper_height),
@@ -172,7 +172,7 @@ impl Reduction {
                 let total = |all: &[f64]| all.iter().sum::<f64>();
                 let terms = 0..upper.offsets.len().saturating_sub(1);
                 let terms = terms.filter(|term| total(upper.of(*term)) > 0.0);
-                points.extend(terms.map(|term| Weighted {
+                points.extend(terms.map(|term| WeightedNumber {
                     at: number(term),
                     lower: total(lower.of(term)),
                     upper: total(upper.of(term)),
@@ -201,7 +201,7 @@ impl Set {
         let mut whole = [Integrals::about(low + 0.5 * (high - low), unit(high - low)); 2];
         let mut support = (high, low);
         self.upper
-            .pieces(upper, self.joint, workspace, &mut |piece| {
+            .pieces(upper, self.operators, workspace, &mut |piece| {
                 whole[1].add(piece);
                 visit(Bound::Upper, piece);
                 if has_area(piece) {
@@ -209,7 +209,7 @@ impl Set {
                 }
             });
         self.lower
-            .pieces(lower, self.joint, workspace, &mut |piece| {
+            .pieces(lower, self.operators, workspace, &mut |piece| {
                 whole[0].add(piece);
                 visit(Bound::Lower, piece);
             });
@@ -257,13 +257,13 @@ impl Set {
     ) -> (f64, f64) {
         let range = (self.low, self.high);
         let unit = unit(self.high - self.low);
-        let mut sums = |end: End, x: f64| {
+        let mut sums = |end: IntervalEnd, x: f64| {
             let mut sums = Integrals::about(x, unit);
             let below = (f64::NEG_INFINITY, x);
             let above = (x, f64::INFINITY);
             let (of_upper, of_lower) = match end {
-                End::Left => (below, above),
-                End::Right => (above, below),
+                IntervalEnd::Left => (below, above),
+                IntervalEnd::Right => (above, below),
             };
             if let Some((upper, lower)) = kept {
                 for (lines, part) in [(upper, of_upper), (lower, of_lower)] {
@@ -281,18 +281,22 @@ impl Set {
                 return (sums.area, sums.moment);
             }
             self.upper
-                .pieces(upper, self.joint, workspace, &mut |piece| {
+                .pieces(upper, self.operators, workspace, &mut |piece| {
                     sums.add_between(piece, of_upper);
                 });
             self.lower
-                .pieces(lower, self.joint, workspace, &mut |piece| {
+                .pieces(lower, self.operators, workspace, &mut |piece| {
                     sums.add_between(piece, of_lower);
                 });
             (sums.area, sums.moment)
         };
         let start = summary.upper.1;
-        let left = search(End::Left, start, range, |x| sums(End::Left, x));
-        let right = search(End::Right, start, range, |x| sums(End::Right, x));
+        let left = search(IntervalEnd::Left, start, range, |x| {
+            sums(IntervalEnd::Left, x)
+        });
+        let right = search(IntervalEnd::Right, start, range, |x| {
+            sums(IntervalEnd::Right, x)
+        });
         (left, right)
     }
 }
@@ -303,13 +307,13 @@ pub(super) fn has_area(piece: &Piece<'_>) -> bool {
 }
 
 /// Returns the interval of weighted numbers by a method of type reduction.
-fn ends_of(method: TypeReduction, points: &[Weighted]) -> Option<(f64, f64)> {
+fn ends_of(method: TypeReduction, points: &[WeightedNumber]) -> Option<(f64, f64)> {
     if method == TypeReduction::Exact {
         return average(points);
     }
     let mut positive = points.iter().filter(|point| point.upper > 0.0);
     let origin = positive.next()?.at;
-    let sums = |weight: fn(&Weighted) -> f64| {
+    let sums = |weight: fn(&WeightedNumber) -> f64| {
         let (mut total, mut moment) = (0.0, 0.0);
         for point in points {
             total += weight(point);
@@ -330,7 +334,7 @@ fn ends_of(method: TypeReduction, points: &[Weighted]) -> Option<(f64, f64)> {
 }
 
 /// Returns the interval of `sum(w x) / sum(w)` over all weights between their bounds; `None` if all are 0.
-pub(super) fn average(points: &[Weighted]) -> Option<(f64, f64)> {
+pub(super) fn average(points: &[WeightedNumber]) -> Option<(f64, f64)> {
     let mut positive = points.iter().filter(|point| point.upper > 0.0);
     let first = positive.next()?.at;
     let (low, high) = positive.fold((first, first), |(low, high), point| {
@@ -339,11 +343,11 @@ pub(super) fn average(points: &[Weighted]) -> Option<(f64, f64)> {
     if points.iter().all(|point| point.lower <= 0.0) {
         return Some((low, high));
     }
-    let sums = |end: End, x: f64| {
+    let sums = |end: IntervalEnd, x: f64| {
         let (mut total, mut moment) = (0.0, 0.0);
         for point in points {
             let below = point.at < x;
-            let weight = if below == (end == End::Left) {
+            let weight = if below == (end == IntervalEnd::Left) {
                 point.upper
             } else {
                 point.lower
@@ -354,13 +358,17 @@ pub(super) fn average(points: &[Weighted]) -> Option<(f64, f64)> {
         (total, moment)
     };
     let (range, start) = ((low, high), low + 0.5 * (high - low));
-    let left = search(End::Left, start, range, |x| sums(End::Left, x));
-    let right = search(End::Right, start, range, |x| sums(End::Right, x));
+    let left = search(IntervalEnd::Left, start, range, |x| {
+        sums(IntervalEnd::Left, x)
+    });
+    let right = search(IntervalEnd::Right, start, range, |x| {
+        sums(IntervalEnd::Right, x)
+    });
     Some((left, right))
 }
 
 /// Returns the interval of `sum(w x)` over all weights between their bounds; `None` if all are 0.
-pub(super) fn sum(points: &[Weighted]) -> Option<(f64, f64)> {
+pub(super) fn sum(points: &[WeightedNumber]) -> Option<(f64, f64)> {
     let (mut low, mut high) = (0.0, 0.0);
     for point in points {
         let (one, other) = (point.lower * point.at, point.upper * point.at);
@@ -373,7 +381,7 @@ pub(super) fn sum(points: &[Weighted]) -> Option<(f64, f64)> {
 /// Returns an end of the interval by Newton's method. `sums` returns the area and the moment about x of the set that is
 /// the upper one on the side of the end, and the lower one on the other side of x.
 fn search(
-    end: End,
+    end: IntervalEnd,
     start: f64,
     (low, high): (f64, f64),
     mut sums: impl FnMut(f64) -> (f64, f64),
@@ -385,8 +393,8 @@ fn search(
         // The first step may come from the wrong side; all later ones approach the root from inside the interval, up to
         // rounding.
         let approaches = match end {
-            End::Left => next < x,
-            End::Right => next > x,
+            IntervalEnd::Left => next < x,
+            IntervalEnd::Right => next > x,
         };
         if next.is_nan() || (step > 0 && !approaches) {
             break;
@@ -400,10 +408,10 @@ fn search(
 mod tests {
     use super::*;
 
-    fn points(all: &[(f64, f64, f64)]) -> Vec<Weighted> {
+    fn points(all: &[(f64, f64, f64)]) -> Vec<WeightedNumber> {
         let points = all
             .iter()
-            .map(|&(at, lower, upper)| Weighted { at, lower, upper });
+            .map(|&(at, lower, upper)| WeightedNumber { at, lower, upper });
         points.collect()
     }
 
@@ -423,8 +431,8 @@ mod tests {
 
     /// The uncertainty bounds of the left end as Wu and Mendel print them, for rules in ascending order: the bound below
     /// and the bound above it.
-    fn wu_mendel_left(points: &[Weighted]) -> (f64, f64) {
-        let sum = |f: &dyn Fn(&Weighted) -> f64| points.iter().map(f).sum::<f64>();
+    fn wu_mendel_left(points: &[WeightedNumber]) -> (f64, f64) {
+        let sum = |f: &dyn Fn(&WeightedNumber) -> f64| points.iter().map(f).sum::<f64>();
         let (lower, upper) = (sum(&|p| p.lower), sum(&|p| p.upper));
         let (y_0, y_m) = (
             sum(&|p| p.lower * p.at) / lower,
@@ -448,20 +456,20 @@ mod tests {
             (state >> 11) as f64 / (1_u64 << 53) as f64
         };
         for _ in 0..2000 {
-            let all: Vec<Weighted> = (0..4)
+            let all: Vec<WeightedNumber> = (0..4)
                 .map(|i| {
                     let upper = 0.1 + 0.9 * random();
-                    Weighted {
+                    WeightedNumber {
                         at: f64::from(i) + random(),
                         lower: upper * random(),
                         upper,
                     }
                 })
                 .collect();
-            let mirrored: Vec<Weighted> = all
+            let mirrored: Vec<WeightedNumber> = all
                 .iter()
                 .rev()
-                .map(|point| Weighted {
+                .map(|point| WeightedNumber {
                     at: -point.at,
                     ..*point
                 })
@@ -475,7 +483,7 @@ mod tests {
             let middle = |(a, b): (f64, f64)| 0.5 * (a + b);
             assert!((wu_low - middle(left).max(all[0].at)).abs() < 1e-12);
             assert!((wu_high + middle(right).max(-all[3].at)).abs() < 1e-12);
-            let total = |f: &dyn Fn(&Weighted) -> f64| all.iter().map(f).sum::<f64>();
+            let total = |f: &dyn Fn(&WeightedNumber) -> f64| all.iter().map(f).sum::<f64>();
             let nie_tan = total(&|p| (p.lower + p.upper) * p.at) / total(&|p| p.lower + p.upper);
             let begian = 0.5
                 * (total(&|p| p.lower * p.at) / total(&|p| p.lower)
@@ -504,7 +512,7 @@ mod tests {
             // The root of c^3 / 6 - tiny c = tiny / 2 (1 - c)^2 is close to that of c^3 = 3 tiny.
             let upper = |x: f64| (0.5 * x * x, -x * x * x / 6.0);
             let lower = |x: f64| (tiny * (1.0 - x), 0.5 * tiny * (1.0 - x) * (1.0 - x));
-            let left = search(End::Left, 2.0 / 3.0, (0.0, 1.0), |x| {
+            let left = search(IntervalEnd::Left, 2.0 / 3.0, (0.0, 1.0), |x| {
                 (upper(x).0 + lower(x).0, upper(x).1 + lower(x).1)
             });
             let (upper, lower) = (upper(left).1, lower(left).1);

@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use super::{Joint, Strengths};
+use super::{ConsequentOperators, Strengths};
 use crate::model::Output;
 use crate::table::{OfMaxima, SetDefuzzifier};
 
@@ -33,7 +33,7 @@ impl Singletons {
     pub(super) fn value(
         &self,
         strengths: Strengths<'_>,
-        joint: Joint,
+        operators: ConsequentOperators,
         defuzzifier: SetDefuzzifier,
     ) -> Option<f64> {
         let places = || {
@@ -41,8 +41,8 @@ impl Singletons {
                 let mut degree = 0.0;
                 for (_, term, height) in terms {
                     for strength in strengths.of(*term).iter().filter(|h| **h > 0.0) {
-                        let part = joint.implication.of(*strength, *height);
-                        degree = joint.aggregation.of(degree, part);
+                        let part = operators.implication.of(*strength, *height);
+                        degree = operators.aggregation.of(degree, part);
                     }
                 }
                 terms.first().map(|(x, ..)| (*x, degree))

@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use super::curves::{Part, Run};
+use super::curves::{ActivatedTerm, Run};
 
 /// Scratch memory that the caller provides. Evaluations never reallocate it.
 #[derive(Debug)]
@@ -12,7 +12,7 @@ pub(crate) struct Workspace {
     /// The maximum number of cuts of an interval, because the capacity of the vector depends on the allocator.
     pub(super) most_cuts: usize,
     pub(super) runs: Vec<Run>,
-    pub(super) parts: Vec<Part>,
+    pub(super) parts: Vec<ActivatedTerm>,
     /// The ends and the degrees there of straight pieces; without capacity unless there is a type reduction.
     pub(super) lines: Vec<[f64; 4]>,
     pub(crate) steps: Steps,

@@ -2,9 +2,9 @@
 
 use super::{
     colour::{Colour, distinct, distinct_line},
-    plot::{Plot, Series, draw},
+    document::{Anchor, Frame, LABEL_WIDTH, SvgDocument},
+    plot::{Plot, PlotLine, draw},
     scale::Scale,
-    sheet::{Anchor, Frame, LABEL_WIDTH, Sheet},
     text::{number, short, titled, wrapped},
 };
 use crate::{
@@ -23,18 +23,18 @@ const STEPS: usize = 200;
 
 /// Returns an SVG of the terms of a variable: their membership functions and, if a value is given, their degrees at it.
 pub fn terms_svg(variable: &Variable, at: Option<f64>) -> String {
-    let mut sheet = Sheet::new(WIDTH, 330.0);
+    let mut document = SvgDocument::new(WIDTH, 330.0);
     let title = titled(&variable.name, variable.unit.as_deref());
     let description = variable.description.as_deref().unwrap_or("");
-    sheet.heading(70.0, &title, description);
+    document.heading(70.0, &title, description);
     let frame = Frame {
         left: 70.0,
         top: 44.0,
         width: 420.0,
         height: 230.0,
     };
-    terms(&mut sheet, &frame, variable, None, &[], at);
-    sheet.finish(&format!("the terms of {title}"))
+    terms(&mut document, &frame, variable, None, &[], at);
+    document.finish(&format!("the terms of {title}"))
 }
 
 /// Returns an SVG of an explanation: the degrees of the inputs' terms, the aggregated set of each output, and the rules
@@ -53,8 +53,8 @@ pub fn explanation_svg(model: &Model, explanation: &Explanation) -> String {
     let blocks = explanation.inputs.len() + explanation.outputs.len();
     let lines = written.iter().map(Vec::len).sum::<usize>() + written.len();
     let rules_top = 60.0 + BLOCK * blocks as f64;
-    let mut sheet = Sheet::new(WIDTH, rules_top + 14.0 * lines as f64 + 20.0);
-    sheet.heading(70.0, &model.name, "");
+    let mut document = SvgDocument::new(WIDTH, rules_top + 14.0 * lines as f64 + 20.0);
+    document.heading(70.0, &model.name, "");
     let frame = |i: usize| Frame {
         left: 70.0,
         top: 62.0 + BLOCK * i as f64,
@@ -67,9 +67,9 @@ pub fn explanation_svg(model: &Model, explanation: &Explanation) -> String {
             title += &format!(", outside the range, used as {}", short(input.value));
         }
         let at = (70.0, frame(i).top - 8.0);
-        sheet.text(at, Anchor::Start, "title", &title);
+        document.text(at, Anchor::Start, "title", &title);
         terms(
-            &mut sheet,
+            &mut document,
             &frame(i),
             variable,
             None,
@@ -80,7 +80,7 @@ pub fn explanation_svg(model: &Model, explanation: &Explanation) -> String {
     for (i, (output, written)) in explanation.outputs.iter().zip(&model.outputs).enumerate() {
         let frame = frame(explanation.inputs.len() + i);
         let at = (70.0, frame.top - 8.0);
-        sheet.text(
+        document.text(
             at,
             Anchor::Start,
             "title",
@@ -97,16 +97,16 @@ pub fn explanation_svg(model: &Model, explanation: &Explanation) -> String {
                 Some((rule.value?, rule.strength, shade(rule), text))
             });
             let numbers: Vec<Number> = numbers.collect();
-            sticks(&mut sheet, &frame, &written.variable, &numbers);
+            sticks(&mut document, &frame, &written.variable, &numbers);
             let scale = Scale::new(written.variable.low, written.variable.high);
-            marker(&mut sheet, &frame, scale, output.value);
+            marker(&mut document, &frame, scale, output.value);
         } else {
             let implied = output.rules.iter();
             let implied: Vec<Area<'_>> = implied
                 .map(|rule| (rule.implied.as_slice(), shade(rule)))
                 .collect();
             terms(
-                &mut sheet,
+                &mut document,
                 &frame,
                 &written.variable,
                 None,
@@ -117,7 +117,7 @@ pub fn explanation_svg(model: &Model, explanation: &Explanation) -> String {
     }
     let mut y = rules_top;
     if !written.is_empty() {
-        sheet.text(
+        document.text(
             (70.0, y),
             Anchor::Start,
             "title",
@@ -136,16 +136,16 @@ pub fn explanation_svg(model: &Model, explanation: &Explanation) -> String {
             width: RULE_BAR * fired.strength.clamp(0.0, 1.0),
             ..bar
         };
-        sheet.rect(bar, format_args!(r##"fill="#eee""##));
-        sheet.rect(full, format_args!(r#"fill="{}""#, distinct(i)));
-        sheet.text((104.0, y), Anchor::End, "label", &number(fired.strength, 3));
+        document.rect(bar, format_args!(r##"fill="#eee""##));
+        document.rect(full, format_args!(r#"fill="{}""#, distinct(i)));
+        document.text((104.0, y), Anchor::End, "label", &number(fired.strength, 3));
         for line in lines {
-            sheet.text((bar.right() + 10.0, y), Anchor::Start, "label", line);
+            document.text((bar.right() + 10.0, y), Anchor::Start, "label", line);
             y += 14.0;
         }
         y += 4.0;
     }
-    sheet.finish(&format!("{}: an evaluation with its reasons", model.name))
+    document.finish(&format!("{}: an evaluation with its reasons", model.name))
 }
 
 /// Returns the value of an output, with the values of the outputs that it reads.
@@ -220,7 +220,12 @@ type Area<'a> = (&'a [(f64, f64)], Colour);
 pub(super) type Number = (f64, f64, Colour, String);
 
 /// Draws the numbers of a Takagi-Sugeno output, each as a stick whose height is its weight.
-pub(super) fn sticks(sheet: &mut Sheet, frame: &Frame, variable: &Variable, numbers: &[Number]) {
+pub(super) fn sticks(
+    document: &mut SvgDocument,
+    frame: &Frame,
+    variable: &Variable,
+    numbers: &[Number],
+) {
     let ends = numbers.iter().map(|(value, ..)| *value);
     // A number may be outside the range.
     let x = Scale::new(
@@ -233,18 +238,18 @@ pub(super) fn sticks(sheet: &mut Sheet, frame: &Frame, variable: &Variable, numb
             frame.at(x.share(*value), *weight),
         ];
         let paint = format_args!(r#"stroke="{colour}" stroke-width="6""#);
-        sheet.through("polyline", &ends, paint);
+        document.through("polyline", &ends, paint);
     }
-    sheet.axes(frame, (x, ""), (Scale::new(0.0, 1.0), "weight"));
+    document.axes(frame, (x, ""), (Scale::new(0.0, 1.0), "weight"));
     let keys = numbers.iter();
     let keys: Vec<(Colour, String)> = keys.map(|(_, _, c, text)| (*c, text.clone())).collect();
-    sheet.keys(frame.right() + 14.0, frame.top, &keys);
+    document.keys(frame.right() + 14.0, frame.top, &keys);
 }
 
 /// Draws the terms of a variable: membership functions, implied sets of rules, a value, and the degrees at it. The
 /// previous shapes of terms that differ in `before` are dashed, the lower membership functions of type-2 terms dotted.
 pub(super) fn terms(
-    sheet: &mut Sheet,
+    document: &mut SvgDocument,
     frame: &Frame,
     variable: &Variable,
     before: Option<&Variable>,
@@ -264,19 +269,19 @@ pub(super) fn terms(
         let outline = outline.map(|(value, degree)| frame.at(x.share(*value), y.share(*degree)));
         let outline: Vec<(f64, f64)> = outline.collect();
         let paint = format_args!(r#"fill="{colour}" fill-opacity=".55""#);
-        sheet.through("polygon", &outline, paint);
+        document.through("polygon", &outline, paint);
     }
     let old = before.into_iter().flat_map(|before| {
         let moved = |i: &usize| variable.terms.get(*i) != before.terms.get(*i);
         let moved = (0..before.terms.len()).filter(moved);
-        moved.map(|i| Series {
+        moved.map(|i| PlotLine {
             dash: "5 3",
-            ..Series::new(i, "", membership(before, i))
+            ..PlotLine::new(i, "", membership(before, i))
         })
     });
-    let series = variable.terms.iter().enumerate().map(|(i, term)| Series {
+    let series = variable.terms.iter().enumerate().map(|(i, term)| PlotLine {
         dash: "none",
-        ..Series::new(i, term.name.as_str(), membership(variable, i))
+        ..PlotLine::new(i, term.name.as_str(), membership(variable, i))
     });
     let lower = Variable {
         terms: (variable.terms.iter())
@@ -285,9 +290,9 @@ pub(super) fn terms(
         ..variable.clone()
     };
     let type2 = (variable.terms.iter().enumerate()).filter(|(_, term)| term.lower.is_some());
-    let dotted = type2.map(|(i, _)| Series {
+    let dotted = type2.map(|(i, _)| PlotLine {
         dash: "1 3",
-        ..Series::new(i, "", membership(&lower, i))
+        ..PlotLine::new(i, "", membership(&lower, i))
     });
     let plot = Plot {
         title: String::new(),
@@ -295,8 +300,8 @@ pub(super) fn terms(
         y: (y, "degree".into()),
         series: old.chain(series).chain(dotted).collect(),
     };
-    draw(sheet, frame, &plot);
-    marker(sheet, frame, x, at);
+    draw(document, frame, &plot);
+    marker(document, frame, x, at);
     let keys = variable.terms.iter().enumerate().map(|(i, term)| {
         let degree = at.map(|at| {
             let upper = number(term.membership(at), 3);
@@ -309,14 +314,14 @@ pub(super) fn terms(
         (distinct_line(i), format!("{}{degree}", term.name))
     });
     let keys: Vec<(Colour, String)> = keys.collect();
-    sheet.keys(frame.right() + 14.0, frame.top, &keys);
+    document.keys(frame.right() + 14.0, frame.top, &keys);
 }
 
 /// Marks a value over the height of a frame.
-fn marker(sheet: &mut Sheet, frame: &Frame, x: Scale, value: Option<f64>) {
+fn marker(document: &mut SvgDocument, frame: &Frame, x: Scale, value: Option<f64>) {
     if let Some(value) = value {
         let share = x.share(value).clamp(0.0, 1.0);
-        sheet.line(frame.at(share, 0.0), frame.at(share, 1.0), "marker");
+        document.line(frame.at(share, 0.0), frame.at(share, 1.0), "marker");
     }
 }
 

@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use super::{
     colour::{Colour, viridis},
     contour,
+    document::{Anchor, Frame, SvgDocument, px},
     scale::Scale,
-    sheet::{Anchor, Frame, Sheet, px},
     slice::Slice,
     text::short,
 };
@@ -21,30 +21,30 @@ const COLOURS: f64 = 100.0;
 ///
 /// Hatched cells (dashed sections of a curve) were filled by interpolation; grey cells have no value.
 pub fn map_svg(slice: &Slice) -> String {
-    let mut sheet = Sheet::map();
-    sheet.heading(Frame::MAP.left, &slice.title(), &slice.held_text());
+    let mut document = SvgDocument::map();
+    document.heading(Frame::MAP.left, &slice.title(), &slice.held_text());
     match &slice.y {
         Some(y) => {
-            cells(&mut sheet, slice, |i, j| {
+            cells(&mut document, slice, |i, j| {
                 Some(step_colour(slice.share(slice.cell(i, j).value?)))
             });
-            contours(&mut sheet, slice);
-            axes(&mut sheet, slice, y.scale(), &y.title());
-            sheet.legend(slice);
-            sheet.notes(slice);
+            contours(&mut document, slice);
+            axes(&mut document, slice, y.scale(), &y.title());
+            document.legend(slice);
+            document.notes(slice);
         }
         None => {
-            curve(&mut sheet, &Frame::MAP, slice);
+            curve(&mut document, &Frame::MAP, slice);
             if slice.any_filled() {
                 let note = format!(
                     "dashed: interpolated where no rule applies ({})",
                     slice.filling_text()
                 );
-                sheet.text((Frame::MAP.left, 486.0), Anchor::Start, "label", &note);
+                document.text((Frame::MAP.left, 486.0), Anchor::Start, "label", &note);
             }
         }
     }
-    sheet.finish(&whole_title(slice))
+    document.finish(&whole_title(slice))
 }
 
 /// Returns the colour for a fraction of the range, in steps.
@@ -60,8 +60,8 @@ pub(super) fn whole_title(slice: &Slice) -> String {
         .to_owned()
 }
 
-pub(super) fn axes(sheet: &mut Sheet, slice: &Slice, y: Scale, y_title: &str) {
-    sheet.axes(
+pub(super) fn axes(document: &mut SvgDocument, slice: &Slice, y: Scale, y_title: &str) {
+    document.axes(
         &Frame::MAP,
         (slice.x.scale(), &slice.x.title()),
         (y, y_title),
@@ -70,7 +70,7 @@ pub(super) fn axes(sheet: &mut Sheet, slice: &Slice, y: Scale, y_title: &str) {
 
 /// Fills the frame cell by cell, and hatches the cells that were filled.
 pub(super) fn cells(
-    sheet: &mut Sheet,
+    document: &mut SvgDocument,
     slice: &Slice,
     colour: impl Fn(usize, usize) -> Option<Colour>,
 ) {
@@ -100,7 +100,7 @@ pub(super) fn cells(
             height: area.height + 0.3,
             ..area
         };
-        sheet.rect(
+        document.rect(
             area,
             format_args!(r#"fill="{}""#, colour.unwrap_or(UNKNOWN)),
         );
@@ -121,7 +121,7 @@ pub(super) fn cells(
         },
     );
     if !outline.is_empty() {
-        sheet.push(format_args!(
+        document.push(format_args!(
             r#"<path d="{outline}" fill="url(#hatch)" fill-opacity=".75"/>"#
         ));
     }
@@ -144,7 +144,7 @@ pub fn runs<L: PartialEq + Copy>(
     }
 }
 
-fn contours(sheet: &mut Sheet, slice: &Slice) {
+fn contours(document: &mut SvgDocument, slice: &Slice) {
     let frame = Frame::MAP;
     let (columns, rows) = (slice.columns(), slice.rows());
     let share = |(i, j): (f64, f64)| (i / (columns - 1) as f64, j / (rows - 1) as f64);
@@ -157,25 +157,25 @@ fn contours(sheet: &mut Sheet, slice: &Slice) {
         for line in &lines {
             let points = line.iter().map(|point| share(*point));
             let points: Vec<(f64, f64)> = points.map(|(x, y)| frame.at(x, y)).collect();
-            sheet.through("polyline", &points, format_args!(r#"class="halo""#));
-            sheet.through("polyline", &points, format_args!(r#"class="contour""#));
+            document.through("polyline", &points, format_args!(r#"class="halo""#));
+            document.through("polyline", &points, format_args!(r#"class="contour""#));
         }
         // The longest line of a level is labelled.
         if let Some(line) = lines.first().filter(|line| line.len() > 4)
             && let Some(middle) = line.get(line.len() / 2)
         {
             let (x, y) = share(*middle);
-            sheet.text_on(frame.label_at(x, y), &short(level));
+            document.text_on(frame.label_at(x, y), &short(level));
         }
     }
 }
 
 /// Draws the output over one input; filled sections are dashed.
-pub(super) fn curve(sheet: &mut Sheet, frame: &Frame, slice: &Slice) {
+pub(super) fn curve(document: &mut SvgDocument, frame: &Frame, slice: &Slice) {
     const DRAWN: &str = r##"fill="none" stroke="#2a788e" stroke-width="2.5""##;
     const DASHED: &str =
         r##"fill="none" stroke="#d55e00" stroke-width="2.5" stroke-dasharray="6 4""##;
-    sheet.grid(frame, slice.range);
+    document.grid(frame, slice.range);
     let mut piece: Vec<(f64, f64)> = Vec::new();
     let mut style = DRAWN;
     for (i, x) in slice.x.points.iter().enumerate() {
@@ -192,14 +192,14 @@ pub(super) fn curve(sheet: &mut Sheet, frame: &Frame, slice: &Slice) {
             piece.extend(point);
         }
         if this != style || point.is_none() {
-            sheet.through("polyline", &piece, format_args!("{style}"));
+            document.through("polyline", &piece, format_args!("{style}"));
             piece.clear();
             style = this;
         }
         piece.extend(point);
     }
-    sheet.through("polyline", &piece, format_args!("{style}"));
-    sheet.axes(
+    document.through("polyline", &piece, format_args!("{style}"));
+    document.axes(
         frame,
         (slice.x.scale(), &slice.x.title()),
         (slice.range, &slice.output_title()),

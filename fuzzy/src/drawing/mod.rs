@@ -29,6 +29,7 @@
 
 mod colour;
 mod contour;
+mod document;
 mod explanation;
 mod explanation_text;
 mod heat;
@@ -37,23 +38,22 @@ mod plot;
 mod reasons_text;
 mod regions;
 mod scale;
-mod sheet;
 mod slice;
 mod surface;
 mod text;
 mod variables;
 
 pub use colour::{Colour, distinct, distinct_line, reds, viridis};
+pub use document::{Anchor, Frame, SvgDocument};
 pub use explanation::{explanation_svg, terms_svg};
 pub use explanation_text::explanation_text;
 pub use heat::{map_svg, runs};
 pub use map_text::{map_text, rules_text, values_text};
-pub use plot::{Plot, Series, plots_svg};
+pub use plot::{Plot, PlotLine, plots_svg};
 pub use reasons_text::{silent_text, what_if_text};
 pub use regions::rules_svg;
 pub use scale::Scale;
-pub use sheet::{Anchor, Frame, Sheet};
 pub use slice::{Axis, Cell, Slice};
 pub use surface::surface_svg;
-pub use text::{Escaped, bar, block, number, short, visible, visible_lines};
+pub use text::{EscapedText, bar, block, number, short, visible, visible_lines};
 pub use variables::{moved_svg, variables_svg, variables_text};

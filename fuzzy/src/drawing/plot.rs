@@ -2,8 +2,8 @@
 
 use super::{
     colour::{Colour, distinct_line},
+    document::{Anchor, Frame, LABEL_WIDTH, SvgDocument},
     scale::Scale,
-    sheet::{Anchor, Frame, LABEL_WIDTH, Sheet},
     text::cut,
 };
 
@@ -17,12 +17,12 @@ pub struct Plot {
     /// The scale and the title of the vertical axis.
     pub y: (Scale, String),
     /// The lines; the last one is on top.
-    pub series: Vec<Series>,
+    pub series: Vec<PlotLine>,
 }
 
 /// One line of a plot.
 #[derive(Debug, Clone)]
-pub struct Series {
+pub struct PlotLine {
     /// The name in the legend; a line without a name is not listed.
     pub name: String,
     /// The colour.
@@ -35,11 +35,11 @@ pub struct Series {
     pub points: Vec<(f64, f64)>,
 }
 
-impl Series {
+impl PlotLine {
     /// Creates the i-th line of a plot; lines differ in colour and in dashes.
-    pub fn new(i: usize, name: impl Into<String>, points: Vec<(f64, f64)>) -> Series {
+    pub fn new(i: usize, name: impl Into<String>, points: Vec<(f64, f64)>) -> PlotLine {
         const DASHES: [&str; 4] = ["none", "7 3", "2 3", "9 3 2 3"];
-        Series {
+        PlotLine {
             name: name.into(),
             colour: distinct_line(i),
             dash: DASHES[i % DASHES.len()],
@@ -49,7 +49,7 @@ impl Series {
     }
 
     fn paint(&self) -> String {
-        let Series { colour, dash, .. } = self;
+        let PlotLine { colour, dash, .. } = self;
         format!(r#"class="series" stroke="{colour}" stroke-dasharray="{dash}""#)
     }
 }
@@ -63,13 +63,13 @@ const LEGEND: f64 = 260.0;
 /// Returns an SVG of plots side by side, with a common legend that lists the lines of the first plot.
 pub fn plots_svg(title: &str, plots: &[Plot]) -> String {
     let keys = plots.first().map_or(&[][..], |plot| &plot.series);
-    let keys: Vec<&Series> = keys
+    let keys: Vec<&PlotLine> = keys
         .iter()
         .filter(|series| !series.name.is_empty())
         .collect();
     let legend = plots.len() as f64 * (LEFT + SIDE) + 24.0;
     let height = (TOP + SIDE + 56.0).max(TOP + keys.len() as f64 * 18.0 + 20.0);
-    let mut sheet = Sheet::new(legend + LEGEND, height);
+    let mut document = SvgDocument::new(legend + LEGEND, height);
     for (i, plot) in plots.iter().enumerate() {
         let frame = Frame {
             left: LEFT + i as f64 * (LEFT + SIDE),
@@ -78,33 +78,33 @@ pub fn plots_svg(title: &str, plots: &[Plot]) -> String {
             height: SIDE,
         };
         let at = (frame.left + SIDE / 2.0, TOP - 16.0);
-        sheet.text(at, Anchor::Middle, "heading", &plot.title);
-        draw(&mut sheet, &frame, plot);
+        document.text(at, Anchor::Middle, "heading", &plot.title);
+        draw(&mut document, &frame, plot);
     }
     for (i, series) in keys.into_iter().enumerate() {
         let y = TOP + 8.0 + 18.0 * i as f64;
         let ends = [(legend, y), (legend + 28.0, y)];
-        sheet.through("polyline", &ends, format_args!("{}", series.paint()));
+        document.through("polyline", &ends, format_args!("{}", series.paint()));
         let name = cut(&series.name, ((LEGEND - 44.0) / LABEL_WIDTH) as usize);
-        sheet.text((legend + 36.0, y + 4.0), Anchor::Start, "label", &name);
+        document.text((legend + 36.0, y + 4.0), Anchor::Start, "label", &name);
     }
-    sheet.finish(title)
+    document.finish(title)
 }
 
-/// Draws a plot into a frame of a sheet.
-pub(super) fn draw(sheet: &mut Sheet, frame: &Frame, plot: &Plot) {
+/// Draws a plot into a frame of a document.
+pub(super) fn draw(document: &mut SvgDocument, frame: &Frame, plot: &Plot) {
     let ((x, x_title), (y, y_title)) = (&plot.x, &plot.y);
-    sheet.grid(frame, *y);
+    document.grid(frame, *y);
     for series in &plot.series {
         let place = |(a, b): &(f64, f64)| frame.at(x.share(*a), y.share(*b));
         let points: Vec<(f64, f64)> = series.points.iter().map(place).collect();
-        sheet.through("polyline", &points, format_args!("{}", series.paint()));
+        document.through("polyline", &points, format_args!("{}", series.paint()));
         for (x, y) in points.into_iter().filter(|_| series.dots) {
-            sheet.push(format_args!(
+            document.push(format_args!(
                 r#"<circle cx="{x:.1}" cy="{y:.1}" r="3" fill="{}"/>"#,
                 series.colour
             ));
         }
     }
-    sheet.axes(frame, (*x, x_title), (*y, y_title));
+    document.axes(frame, (*x, x_title), (*y, y_title));
 }

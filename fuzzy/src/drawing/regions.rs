@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use super::{
     colour::distinct,
+    document::{Anchor, Frame, SvgDocument},
     heat::{axes, cells, whole_title},
     scale::Scale,
-    sheet::{Anchor, Frame, Sheet},
     slice::Slice,
 };
 use crate::model::Model;
@@ -26,11 +26,11 @@ pub fn rules_svg(slice: &Slice, model: &Model) -> String {
         }
     }
     let order: Vec<usize> = areas.keys().copied().collect();
-    let mut sheet = Sheet::map();
+    let mut document = SvgDocument::map();
     let frame = Frame::MAP;
     let title = format!("{}, dominating rule", slice.title());
-    sheet.heading(frame.left, &title, &slice.held_text());
-    cells(&mut sheet, slice, |i, j| {
+    document.heading(frame.left, &title, &slice.held_text());
+    cells(&mut document, slice, |i, j| {
         let rule = slice.cell(i, j).rule?;
         order.binary_search(&rule).ok().map(distinct)
     });
@@ -49,12 +49,12 @@ pub fn rules_svg(slice: &Slice, model: &Model) -> String {
             .min_by(|a, b| distance(a).total_cmp(&distance(b)));
         if let Some((i, j)) = nearest {
             let at = frame.label_at(share(*i, slice.columns()), share(*j, slice.rows()));
-            sheet.text_on(at, &(rule + 1).to_string());
+            document.text_on(at, &(rule + 1).to_string());
         }
     }
     match &slice.y {
-        Some(y) => axes(&mut sheet, slice, y.scale(), &y.title()),
-        None => axes(&mut sheet, slice, Scale::new(0.0, 1.0), ""),
+        Some(y) => axes(&mut document, slice, y.scale(), &y.title()),
+        None => axes(&mut document, slice, Scale::new(0.0, 1.0), ""),
     }
     let keys = order.iter().take(NAMED).enumerate().map(|(i, rule)| {
         let consequents = model
@@ -69,12 +69,12 @@ pub fn rules_svg(slice: &Slice, model: &Model) -> String {
         (distinct(i), format!("{}: {}", rule + 1, terms.join(", ")))
     });
     let left = frame.right() + 12.0;
-    sheet.keys(left, frame.top, &keys.collect::<Vec<_>>());
+    document.keys(left, frame.top, &keys.collect::<Vec<_>>());
     if order.len() > NAMED {
         let at = (left, frame.top + 18.0 * NAMED as f64 + 10.0);
         let more = format!("and {} more", order.len() - NAMED);
-        sheet.text(at, Anchor::Start, "label", &more);
+        document.text(at, Anchor::Start, "label", &more);
     }
-    sheet.notes(slice);
-    sheet.finish(&format!("{}, dominating rule", whole_title(slice)))
+    document.notes(slice);
+    document.finish(&format!("{}, dominating rule", whole_title(slice)))
 }

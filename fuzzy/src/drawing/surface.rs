@@ -2,9 +2,9 @@
 
 use super::{
     colour::Colour,
+    document::{Anchor, Frame, SvgDocument},
     heat::{step_colour, whole_title},
     scale::thinned,
-    sheet::{Anchor, Frame, Sheet},
     slice::{Axis, Slice},
     text::short,
 };
@@ -20,7 +20,7 @@ const TIP_DEG: f64 = 28.0;
 const MIDDLE: (f64, f64) = (280.0, 258.0);
 const SIZE: f64 = 285.0;
 
-/// A projection of the unit cube onto the sheet. It has no perspective, so that equal heights stay equal.
+/// A projection of the unit cube onto the document. It has no perspective, so that equal heights stay equal.
 struct View {
     sin_turn: f64,
     cos_turn: f64,
@@ -39,7 +39,7 @@ impl View {
         }
     }
 
-    /// Returns the position on the sheet of a point of the unit cube.
+    /// Returns the position on the document of a point of the unit cube.
     fn at(&self, x: f64, y: f64, z: f64) -> (f64, f64) {
         let (x, y, z) = (x - 0.5, y - 0.5, z - 0.5);
         let across = x * self.cos_turn + y * self.sin_turn;
@@ -57,9 +57,9 @@ impl View {
 pub fn surface_svg(slice: &Slice) -> Option<String> {
     let y = slice.y.as_ref()?;
     let view = View::new();
-    let mut sheet = Sheet::map();
-    sheet.heading(Frame::MAP.left, &slice.title(), &slice.held_text());
-    floor(&mut sheet, &view, slice, y);
+    let mut document = SvgDocument::map();
+    document.heading(Frame::MAP.left, &slice.title(), &slice.held_text());
+    floor(&mut document, &view, slice, y);
 
     let columns = thinned(slice.columns(), MOST_POINTS);
     let rows = thinned(slice.rows(), MOST_POINTS);
@@ -92,38 +92,38 @@ pub fn surface_svg(slice: &Slice) -> Option<String> {
         let colour = step_colour(height);
         let edge = colour.mix(Colour::BLACK, 0.25);
         let paint = format_args!(r#"fill="{colour}" stroke="{edge}" stroke-width=".5""#);
-        sheet.through("polygon", &points, paint);
+        document.through("polygon", &points, paint);
         if is_filled {
             let paint = format_args!(r#"fill="url(#hatch)" fill-opacity=".6""#);
-            sheet.through("polygon", &points, paint);
+            document.through("polygon", &points, paint);
         }
     }
-    sheet.legend(slice);
-    sheet.notes(slice);
-    Some(sheet.finish(&whole_title(slice)))
+    document.legend(slice);
+    document.notes(slice);
+    Some(document.finish(&whole_title(slice)))
 }
 
 /// Draws the floor with its grid, the vertical axis, ticks and titles.
-fn floor(sheet: &mut Sheet, view: &View, slice: &Slice, y: &Axis) {
+fn floor(document: &mut SvgDocument, view: &View, slice: &Slice, y: &Axis) {
     for tick in slice.x.scale().ticks(5.0) {
         let x = slice.x.scale().share(tick);
-        sheet.line(view.at(x, 0.0, 0.0), view.at(x, 1.0, 0.0), "grid");
+        document.line(view.at(x, 0.0, 0.0), view.at(x, 1.0, 0.0), "grid");
         let (left, top) = view.at(x, -0.06, 0.0);
-        sheet.text((left, top + 8.0), Anchor::Middle, "label", &short(tick));
+        document.text((left, top + 8.0), Anchor::Middle, "label", &short(tick));
     }
     for tick in y.scale().ticks(5.0) {
         let at = y.scale().share(tick);
-        sheet.line(view.at(0.0, at, 0.0), view.at(1.0, at, 0.0), "grid");
+        document.line(view.at(0.0, at, 0.0), view.at(1.0, at, 0.0), "grid");
         let (left, top) = view.at(1.04, at, 0.0);
-        sheet.text((left, top + 8.0), Anchor::Start, "label", &short(tick));
+        document.text((left, top + 8.0), Anchor::Start, "label", &short(tick));
     }
     for tick in slice.range.ticks(5.0) {
         let z = slice.range.share(tick);
         // On the two walls behind the surface.
-        sheet.line(view.at(0.0, 0.0, z), view.at(0.0, 1.0, z), "grid");
-        sheet.line(view.at(0.0, 1.0, z), view.at(1.0, 1.0, z), "grid");
+        document.line(view.at(0.0, 0.0, z), view.at(0.0, 1.0, z), "grid");
+        document.line(view.at(0.0, 1.0, z), view.at(1.0, 1.0, z), "grid");
         let (left, top) = view.at(0.0, 0.0, z);
-        sheet.text((left - 6.0, top + 4.0), Anchor::End, "label", &short(tick));
+        document.text((left - 6.0, top + 4.0), Anchor::End, "label", &short(tick));
     }
     for (from, to) in [
         ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0)),
@@ -132,13 +132,13 @@ fn floor(sheet: &mut Sheet, view: &View, slice: &Slice, y: &Axis) {
         ((0.0, 1.0, 0.0), (0.0, 1.0, 1.0)),
     ] {
         let at = |(x, y, z): (f64, f64, f64)| view.at(x, y, z);
-        sheet.line(at(from), at(to), "tick");
+        document.line(at(from), at(to), "tick");
     }
     let x_ends = (view.at(0.0, -0.17, 0.0), view.at(1.0, -0.17, 0.0));
     let y_ends = (view.at(1.2, 0.0, 0.0), view.at(1.2, 1.0, 0.0));
     for ((from, to), title) in [(x_ends, slice.x.title()), (y_ends, y.title())] {
         let middle = ((from.0 + to.0) / 2.0, (from.1 + to.1) / 2.0 + 8.0);
         let along = (to.1 - from.1).atan2(to.0 - from.0).to_degrees();
-        sheet.turned(middle, along, &title);
+        document.turned(middle, along, &title);
     }
 }

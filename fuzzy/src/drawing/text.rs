@@ -52,9 +52,9 @@ fn replaced(text: &str, stays: impl Fn(char, &str) -> bool) -> Cow<'_, str> {
 
 /// A text that is escaped for the content and attributes of HTML and SVG and made visible ([`visible_lines`]), so that
 /// no text can break a file.
-pub struct Escaped<'a>(pub &'a str);
+pub struct EscapedText<'a>(pub &'a str);
 
-impl fmt::Display for Escaped<'_> {
+impl fmt::Display for EscapedText<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for character in visible_lines(self.0).chars() {
             match character {
@@ -147,7 +147,7 @@ mod tests {
 
     #[test]
     fn text_of_a_log_cannot_be_markup() {
-        let text = Escaped("<script>alert(\"1\")</script> & 'x'\0\u{7}").to_string();
+        let text = EscapedText("<script>alert(\"1\")</script> & 'x'\0\u{7}").to_string();
         assert_eq!(
             text,
             "&lt;script&gt;alert(&quot;1&quot;)&lt;/script&gt; &amp; &#39;x&#39;\\u{0}\\u{7}"

@@ -2,10 +2,10 @@
 
 use super::{
     colour::{Colour, distinct, distinct_line},
+    document::{Anchor, Frame, SvgDocument},
     explanation::{Number, sticks, terms},
     heat::curve,
     scale::Scale,
-    sheet::{Anchor, Frame, Sheet},
     slice::Slice,
     text::{number, short, titled, visible},
 };
@@ -37,28 +37,28 @@ pub fn moved_svg(before: &Model, after: &Model) -> String {
 
 fn drawn(model: &Model, before: Option<&Model>, curves: &[Slice]) -> String {
     let blocks = model.inputs.len() + model.outputs.len() + 2 * curves.len();
-    let mut sheet = Sheet::new(WIDTH, 60.0 + BLOCK * blocks as f64);
-    sheet.heading(70.0, &model.name, "");
+    let mut document = SvgDocument::new(WIDTH, 60.0 + BLOCK * blocks as f64);
+    document.heading(70.0, &model.name, "");
     let frame = |i: usize, height: f64| Frame {
         left: 70.0,
         top: 62.0 + BLOCK * i as f64,
         width: 400.0,
         height,
     };
-    let title = |sheet: &mut Sheet, frame: &Frame, title: &str| {
-        sheet.text((70.0, frame.top - 8.0), Anchor::Start, "title", title);
+    let title = |document: &mut SvgDocument, frame: &Frame, title: &str| {
+        document.text((70.0, frame.top - 8.0), Anchor::Start, "title", title);
     };
     let heading = |variable: &Variable| titled(&variable.name, variable.unit.as_deref());
     for (i, input) in model.inputs.iter().enumerate() {
         let frame = frame(i, FRAME);
-        title(&mut sheet, &frame, &heading(input));
+        title(&mut document, &frame, &heading(input));
         let before =
             before.and_then(|before| before.inputs.iter().find(|old| old.name == input.name));
-        terms(&mut sheet, &frame, input, before, &[], None);
+        terms(&mut document, &frame, input, before, &[], None);
     }
     for (i, output) in model.outputs.iter().enumerate() {
         let frame = frame(model.inputs.len() + i, FRAME);
-        title(&mut sheet, &frame, &heading(&output.variable));
+        title(&mut document, &frame, &heading(&output.variable));
         let old = before.and_then(|before| {
             let mut outputs = before.outputs.iter();
             outputs.find(|old| old.variable.name == output.variable.name)
@@ -71,20 +71,20 @@ fn drawn(model: &Model, before: Option<&Model>, curves: &[Slice]) -> String {
             let moved = moved
                 .map(|(at, weight, colour, text)| (at, weight / 2.0, colour, text + " before"));
             sticks_of.extend(moved.collect::<Vec<Number>>());
-            sticks(&mut sheet, &frame, &output.variable, &sticks_of);
+            sticks(&mut document, &frame, &output.variable, &sticks_of);
         } else {
             let before = old.map(|old| &old.variable);
-            terms(&mut sheet, &frame, &output.variable, before, &[], None);
+            terms(&mut document, &frame, &output.variable, before, &[], None);
         }
     }
     let first = model.inputs.len() + model.outputs.len();
     for (i, slice) in curves.iter().enumerate() {
         let frame = frame(first + 2 * i, FRAME + BLOCK);
         let name = format!("{} over {}", slice.output_title(), slice.x.title());
-        title(&mut sheet, &frame, &name);
-        curve(&mut sheet, &frame, slice);
+        title(&mut document, &frame, &name);
+        curve(&mut document, &frame, slice);
     }
-    sheet.finish(&format!("{}: its variables and their terms", model.name))
+    document.finish(&format!("{}: its variables and their terms", model.name))
 }
 
 /// Returns the terms of a Takagi-Sugeno output. A linear function has no stick, only its formula.

@@ -6,13 +6,13 @@ use core::ops::{Deref, DerefMut};
 /// Numbers with `L` rows each. If `L` is larger than 1, they start at a cache line, because accessing a vector that
 /// spans two lines takes twice as long.
 #[derive(Debug, Clone)]
-pub(super) struct Rows<const L: usize> {
+pub(super) struct AlignedRows<const L: usize> {
     numbers: Vec<f64>,
     /// The index of the first number of the first row.
     start: usize,
 }
 
-impl<const L: usize> Rows<L> {
+impl<const L: usize> AlignedRows<L> {
     /// Creates `count` numbers per row, all 0.
     pub(super) fn new(count: usize) -> Self {
         const LINE: usize = 64;
@@ -23,11 +23,11 @@ impl<const L: usize> Rows<L> {
         };
         let numbers = vec![0.0; count * L + spare];
         let start = numbers.as_ptr().align_offset(LINE).min(spare);
-        Rows { numbers, start }
+        AlignedRows { numbers, start }
     }
 }
 
-impl<const L: usize> Deref for Rows<L> {
+impl<const L: usize> Deref for AlignedRows<L> {
     type Target = [[f64; L]];
 
     #[inline(always)]
@@ -37,7 +37,7 @@ impl<const L: usize> Deref for Rows<L> {
     }
 }
 
-impl<const L: usize> DerefMut for Rows<L> {
+impl<const L: usize> DerefMut for AlignedRows<L> {
     #[inline(always)]
     fn deref_mut(&mut self) -> &mut [[f64; L]] {
         let start = if L > 1 { self.start } else { 0 };

@@ -3,14 +3,14 @@
 use alloc::vec::Vec;
 
 use super::literal::Literals;
-use super::rules::{Draft, Firing, may_be_programs};
+use super::rules::{FiringOperators, IndexedRule, may_be_programs};
 use super::{CompiledOutput, Input as Range};
-use crate::defuzzify::{Method, Prepared};
+use crate::defuzzify::{Method, PreparedSet};
 use crate::model::{Conjunction, Disjunction, MembershipFunction, NoRuleFires, Term};
 use crate::table::{
-    Action, Axis, Base, Block, ClosedForm, Coefficient, Conjunctions, Consequent, Curve, Dimension,
-    Edge, Ends, Flank, FuzzySet, Hedge, Input, Knot, LayeredSet, Layers, Line, Moment, Node,
-    Output, Pair, Point, Program, Section, SetTerm, Sizes, Step, Strand, Table, arrays,
+    Action, AntecedentStep, Axis, Base, Block, ClosedForm, Coefficient, Conjunctions, Consequent,
+    Curve, Dimension, Edge, Ends, Flank, FuzzySet, Hedge, Input, Knot, LayeredSet, Layers, Line,
+    Moment, Node, Output, Pair, Point, Program, Section, SetTerm, Sizes, Strand, Table, arrays,
     arrays_from_fields,
 };
 
@@ -72,10 +72,10 @@ arrays!(arrays_from_fields! OwnedTable;);
 
 impl OwnedTable {
     pub(super) fn new(
-        firing: &Firing,
+        firing: &FiringOperators,
         inputs: &[Range],
         literals: &[Literals],
-        drafts: &[Draft],
+        drafts: &[IndexedRule],
         outputs: &[CompiledOutput],
     ) -> Self {
         let mut table = OwnedTable::empty(firing, outputs);
@@ -105,10 +105,10 @@ impl OwnedTable {
     /// Compiles all rules to programs and all literals to formulas, to evaluate several rows together. `None` if a
     /// batch does not benefit from that.
     pub(super) fn programs_alone(
-        firing: &Firing,
+        firing: &FiringOperators,
         inputs: &[Range],
         literals: &[Literals],
-        drafts: &[Draft],
+        drafts: &[IndexedRule],
         outputs: &[CompiledOutput],
     ) -> Option<Self> {
         let mut table = OwnedTable::empty(firing, outputs);
@@ -119,7 +119,7 @@ impl OwnedTable {
         }
         table.sizes.partial = 1;
         // In the order of the model, finding the strongest rule takes fewer steps.
-        let mut drafts: Vec<&Draft> = drafts.iter().collect();
+        let mut drafts: Vec<&IndexedRule> = drafts.iter().collect();
         drafts.sort_by_key(|draft| draft.rule);
         for draft in drafts {
             table.program(draft);
@@ -131,7 +131,7 @@ impl OwnedTable {
     }
 
     /// Returns a table with the outputs, but without inputs and rules.
-    fn empty(firing: &Firing, outputs: &[CompiledOutput]) -> Self {
+    fn empty(firing: &FiringOperators, outputs: &[CompiledOutput]) -> Self {
         let mut table = OwnedTable {
             and: firing.and,
             or: firing.or,
@@ -274,7 +274,7 @@ impl OwnedTable {
 
 impl OwnedTable {
     /// Adds a prepared set. Term k has the firing strengths `offsets[k]..offsets[k + 1]`.
-    fn set(&mut self, prepared: &Prepared, offsets: &[usize]) -> (u32, u32) {
+    fn set(&mut self, prepared: &PreparedSet, offsets: &[usize]) -> (u32, u32) {
         let (first_knot, first_flank) = (self.knots.len() as u32, self.flanks.len() as u32);
         let (first_strand, first_term) = (self.strands.len() as u32, self.set_terms.len() as u32);
         self.knots.extend(&prepared.knots);

@@ -10,7 +10,7 @@ use alloc::{boxed::Box, format, string::String, vec::Vec};
 
 use super::arrays::OwnedTable;
 use super::{CompiledOutput, Outcome, RowBuffers, Stage, StageScratch, State};
-use crate::defuzzify::{Joint, Reduction, Strengths, Weighted};
+use crate::defuzzify::{ConsequentOperators, Reduction, Strengths, WeightedNumber};
 use crate::model::{
     Defuzzifier, MembershipFunction, Model, Output, TypeReduction, Variable, type2::Bound,
 };
@@ -31,7 +31,7 @@ pub(super) struct Bounds {
 #[derive(Debug)]
 pub(super) struct BoundsScratch {
     lower: StageScratch,
-    points: Vec<Weighted>,
+    points: Vec<WeightedNumber>,
 }
 
 /// Keeps the capacity, so that evaluations with the clone do not allocate either.
@@ -56,19 +56,19 @@ impl Stage {
         }
         let reduction = |output: &Output| {
             let operators = model.operators_of_output(output);
-            let joint = Joint {
+            let operators = ConsequentOperators {
                 implication: operators.implication,
                 aggregation: operators.aggregation,
             };
             let has_interval = model.has_interval(output);
-            has_interval.then(|| (output.type_reduction, Reduction::new(output, joint)))
+            has_interval.then(|| (output.type_reduction, Reduction::new(output, operators)))
         };
         let bounds = Bounds {
             lower: Stage::plain(&bound(model, Bound::Lower)),
             reductions: model.outputs.iter().map(reduction).collect(),
         };
         Stage {
-            single: super::Single::Bounds(Box::new(bounds)),
+            single: super::SingleRowMethod::Bounds(Box::new(bounds)),
             ..Stage::plain(&bound(model, Bound::Upper))
         }
     }
@@ -76,7 +76,7 @@ impl Stage {
     /// Returns whether an output of the stage is an interval.
     pub(super) fn bounds(&self) -> Option<&Bounds> {
         match &self.single {
-            super::Single::Bounds(bounds) => Some(bounds),
+            super::SingleRowMethod::Bounds(bounds) => Some(bounds),
             _ => None,
         }
     }

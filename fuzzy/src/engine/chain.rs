@@ -11,8 +11,8 @@ use crate::table;
 #[derive(Debug, Clone)]
 pub(super) struct Chain {
     /// The position of the first stage in the model.
-    first: Place,
-    later: Vec<Later>,
+    first: OwnedStageIndices,
+    later: Vec<LaterStage>,
     /// The same stages as plain arrays: a [`table::Chain`].
     pub(super) flat: OwnedTable,
     pub(super) stages: Vec<table::Stage>,
@@ -21,14 +21,14 @@ pub(super) struct Chain {
 
 /// A stage after the first one.
 #[derive(Debug, Clone)]
-pub(super) struct Later {
-    place: Place,
+pub(super) struct LaterStage {
+    indices: OwnedStageIndices,
     pub(super) stage: Stage,
 }
 
 /// The relation of a stage to the whole model.
 #[derive(Debug, Clone)]
-struct Place {
+struct OwnedStageIndices {
     /// The outputs that the stage reads. Their values follow those of the inputs.
     reads: Vec<u32>,
     /// The index in the model of each output of the stage.
@@ -37,18 +37,18 @@ struct Place {
     rules: Vec<u32>,
 }
 
-impl Place {
+impl OwnedStageIndices {
     fn of(stage: &chain::Stage<'_>) -> Self {
         let indices = |all: &[usize]| all.iter().map(|index| *index as u32).collect();
-        Place {
+        OwnedStageIndices {
             reads: indices(&stage.reads),
             outputs: indices(&stage.outputs),
             rules: indices(&stage.rules),
         }
     }
 
-    fn lend(&self) -> table::chain::Place<'_> {
-        table::chain::Place {
+    fn lend(&self) -> table::chain::StageIndices<'_> {
+        table::chain::StageIndices {
             reads: &self.reads,
             outputs: &self.outputs,
             rules: &self.rules,
@@ -58,20 +58,20 @@ impl Place {
 
 impl Chain {
     pub(super) fn new(first: (&chain::Stage<'_>, &Stage), later: &[chain::Stage<'_>]) -> Self {
-        let (place, first) = (Place::of(first.0), first.1);
-        let later = later.iter().map(|stage| Later {
-            place: Place::of(stage),
+        let (indices, first) = (OwnedStageIndices::of(first.0), first.1);
+        let later = later.iter().map(|stage| LaterStage {
+            indices: OwnedStageIndices::of(stage),
             stage: Stage::new(&stage.model),
         });
         let mut chain = Chain {
-            first: place,
+            first: indices,
             later: later.collect(),
             flat: OwnedTable::default(),
             stages: Vec::new(),
             places: Vec::new(),
         };
         let (mut flat, mut stages, mut places) = (OwnedTable::default(), Vec::new(), Vec::new());
-        for (place, stage) in chain.stages(first) {
+        for (indices, stage) in chain.stages(first) {
             let [conjunctions, actions_a_cell, first_action, sums] =
                 stage.arrays.conjunctions.code();
             flat.append(&stage.arrays);
@@ -81,12 +81,12 @@ impl Chain {
                 first_action,
                 sums,
                 sizes: stage.arrays.sizes,
-                reads: place.reads.len() as u32,
-                outputs: place.outputs.len() as u32,
-                rules: place.rules.len() as u32,
+                reads: indices.reads.len() as u32,
+                outputs: indices.outputs.len() as u32,
+                rules: indices.rules.len() as u32,
                 ends: flat.ends(),
             });
-            for indices in [&place.reads, &place.outputs, &place.rules] {
+            for indices in [&indices.reads, &indices.outputs, &indices.rules] {
                 places.extend_from_slice(indices);
             }
         }
@@ -94,19 +94,25 @@ impl Chain {
         chain
     }
 
-    pub(super) fn later(&self) -> &[Later] {
+    pub(super) fn later(&self) -> &[LaterStage] {
         &self.later
     }
 
     /// Returns the stages in the order of evaluation, each with its relation to the model.
-    fn stages<'a>(&'a self, first: &'a Stage) -> impl Iterator<Item = (&'a Place, &'a Stage)> {
-        let later = self.later.iter().map(|later| (&later.place, &later.stage));
+    fn stages<'a>(
+        &'a self,
+        first: &'a Stage,
+    ) -> impl Iterator<Item = (&'a OwnedStageIndices, &'a Stage)> {
+        let later = self
+            .later
+            .iter()
+            .map(|later| (&later.indices, &later.stage));
         core::iter::once((&self.first, first)).chain(later)
     }
 
     /// Returns the maximum number of outputs that a stage reads.
     pub(super) fn most_reads(&self) -> usize {
-        let reads = self.later.iter().map(|later| later.place.reads.len());
+        let reads = self.later.iter().map(|later| later.indices.reads.len());
         reads.max().unwrap_or(0)
     }
 }
@@ -132,15 +138,15 @@ impl Engine {
             ..
         } = scratch;
         let stages = chain.later.iter().zip(later);
-        let stages = stages.map(|(later, scratch)| (&later.place, &later.stage, scratch));
-        for (place, stage, scratch) in
+        let stages = stages.map(|(later, scratch)| (&later.indices, &later.stage, scratch));
+        for (indices, stage, scratch) in
             core::iter::once((&chain.first, &self.first, first)).chain(stages)
         {
             let given = (inputs, &mut values[..], &mut own[..]);
             let evaluate = |inputs: &[f64], own: &mut [Outcome]| {
                 stage.outcomes(scratch, inputs, own);
             };
-            table::chain::stage(place.lend(), given, outcomes, evaluate, &mut keep);
+            table::chain::stage(indices.lend(), given, outcomes, evaluate, &mut keep);
         }
     }
 
@@ -175,15 +181,19 @@ impl Engine {
         self.chained(chain, scratch, inputs, &mut outcomes, |_, _| {});
         scratch.outcomes = outcomes;
         let mut rules = 0;
-        for (number, (place, stage)) in chain.stages(&self.first).enumerate() {
-            if let Some(own) = place.outputs.iter().position(|own| *own as usize == output) {
+        for (number, (indices, stage)) in chain.stages(&self.first).enumerate() {
+            if let Some(own) = indices
+                .outputs
+                .iter()
+                .position(|own| *own as usize == output)
+            {
                 let reads = scratch.values.get_mut(inputs.len()..)?.iter_mut();
-                for (value, read) in reads.zip(&place.reads) {
+                for (value, read) in reads.zip(&indices.reads) {
                     *value = scratch.outcomes.get(*read as usize)?.value()?;
                 }
                 return Some((number, stage, own, rules));
             }
-            rules += place.rules.len();
+            rules += indices.rules.len();
         }
         None
     }

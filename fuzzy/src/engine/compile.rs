@@ -5,8 +5,8 @@ use alloc::{boxed::Box, collections::BTreeMap, string::String, sync::Arc, vec, v
 use super::arrays::OwnedTable;
 use super::chain::Chain;
 use super::literal::{Literal, Literals};
-use super::rules::{Draft, Firing};
-use super::strategy::{Merging, Single, method};
+use super::rules::{FiringOperators, IndexedRule};
+use super::strategy::{SingleRowMethod, StrengthCombination, method};
 use super::{CompiledOutput, Engine, Input, NamedOutput, Stage};
 use crate::defuzzify::Method;
 use crate::diagnostic::Findings;
@@ -16,7 +16,7 @@ use crate::model::{
     document::{Document, Spans},
 };
 use crate::rule::{Condition, Hedge, Proposition};
-use crate::table::{Action, Op, Step};
+use crate::table::{Action, AntecedentStep, Op};
 use crate::validate::validate;
 
 impl Engine {
@@ -69,9 +69,9 @@ impl Engine {
             model: Arc::new(model.clone()),
         };
         if is_chain && !model.has_type2_terms() {
-            let said = engine.propositions();
+            let propositions = engine.propositions();
             if let Some(chain) = &mut engine.chain {
-                chain.conclusions(&said);
+                chain.conclusions(&propositions);
             }
         }
         engine
@@ -94,7 +94,7 @@ impl Stage {
     /// functions are compiled.
     pub(super) fn plain(model: &Model) -> Self {
         let compiler = Compiler::new(model);
-        let firing = Firing::of(model);
+        let firing = FiringOperators::of(model);
         let drafts = compiler.drafts();
         compiler.stage(drafts, &firing)
     }
@@ -168,7 +168,7 @@ impl<'m> Compiler<'m> {
     /// Returns the rules as literals, steps and actions, sorted by their content, so that the order of rules in a rule
     /// set does not affect the bits of a result. Rules with an activation method keep their order, because some methods
     /// depend on it.
-    pub(super) fn drafts(&self) -> Vec<Draft> {
+    pub(super) fn drafts(&self) -> Vec<IndexedRule> {
         let model = self.model;
         let inputs_of: Vec<usize> = self.literals.keys().map(|key| key.0).collect();
         let mut drafts = Vec::new();
@@ -206,7 +206,7 @@ impl<'m> Compiler<'m> {
                 by_hedges.insert(Vec::new(), Vec::new());
             }
             for (hedges, actions) in by_hedges {
-                let draft = Draft {
+                let draft = IndexedRule {
                     literals: plain(&steps, &inputs_of).filter(|_| hedges.is_empty()),
                     steps: steps.clone(),
                     weight: rule.weight,
@@ -218,7 +218,7 @@ impl<'m> Compiler<'m> {
                 drafts.push((kept, draft));
             }
         }
-        let content = |draft: &Draft| {
+        let content = |draft: &IndexedRule| {
             let actions = draft.actions.iter();
             actions
                 .map(|a| (a.output, a.strength, a.weight.to_bits()))
@@ -237,15 +237,15 @@ impl<'m> Compiler<'m> {
         drafts.into_iter().map(|(_, draft)| draft).collect()
     }
 
-    fn condition(&self, condition: &Condition, steps: &mut Vec<Step>) {
+    fn condition(&self, condition: &Condition, steps: &mut Vec<AntecedentStep>) {
         match condition {
-            Condition::Is(proposition) => steps.push(Step {
+            Condition::Is(proposition) => steps.push(AntecedentStep {
                 op: Op::PUSH,
                 literal: self.literal(proposition),
             }),
             Condition::Not(inner) => {
                 self.condition(inner, steps);
-                steps.push(Step {
+                steps.push(AntecedentStep {
                     op: Op::NOT,
                     literal: 0,
                 });
@@ -258,13 +258,13 @@ impl<'m> Compiler<'m> {
     fn joined(
         &self,
         conditions: &[Condition],
-        steps: &mut Vec<Step>,
+        steps: &mut Vec<AntecedentStep>,
         (with_literal, with_top): (Op, Op),
     ) {
         for (i, condition) in conditions.iter().enumerate() {
             match condition {
                 Condition::Is(proposition) if i > 0 => {
-                    steps.push(Step {
+                    steps.push(AntecedentStep {
                         op: with_literal,
                         literal: self.literal(proposition),
                     });
@@ -272,7 +272,7 @@ impl<'m> Compiler<'m> {
                 _ => {
                     self.condition(condition, steps);
                     if i > 0 {
-                        steps.push(Step {
+                        steps.push(AntecedentStep {
                             op: with_top,
                             literal: 0,
                         });
@@ -282,7 +282,7 @@ impl<'m> Compiler<'m> {
         }
     }
 
-    fn stage(&self, mut drafts: Vec<Draft>, firing: &Firing) -> Stage {
+    fn stage(&self, mut drafts: Vec<IndexedRule>, firing: &FiringOperators) -> Stage {
         let model = self.model;
         let mut outputs = Vec::new();
         let mut first_strength = 0;
@@ -322,7 +322,7 @@ impl<'m> Compiler<'m> {
         let arrays = OwnedTable::new(firing, &inputs, &literals, &drafts, &outputs);
         Stage {
             batch: OwnedTable::programs_alone(firing, &inputs, &formulas, &drafts, &outputs),
-            single: Single::of(&arrays),
+            single: SingleRowMethod::of(&arrays),
             arrays,
             outputs,
         }
@@ -334,19 +334,19 @@ impl<'m> Compiler<'m> {
         index: usize,
         output: &Output,
         first_strength: usize,
-        drafts: &mut [Draft],
+        drafts: &mut [IndexedRule],
     ) -> CompiledOutput {
         let variable = &output.variable;
         let operators = self.model.operators_of_output(output);
         let method = method(output, operators, |name| self.inputs.get(name).copied());
-        let merging = Merging::of(&method, operators);
+        let combination = StrengthCombination::of(&method, operators);
         let actions = || drafts.iter().flat_map(|draft| &draft.actions);
         let here = |action: &&Action| action.output as usize == index;
         let mut counts = vec![0; variable.terms.len()];
         for action in actions().filter(here) {
             counts[action.strength as usize] += 1;
         }
-        if merging != Merging::Apart {
+        if combination != StrengthCombination::Apart {
             counts.fill(1);
         }
         let mut offsets = vec![0];
@@ -367,8 +367,8 @@ impl<'m> Compiler<'m> {
             if action.output as usize == index {
                 let term = action.strength as usize;
                 action.strength = (first_strength + next[term]) as u32;
-                action.sums = u32::from(merging == Merging::Sum);
-                if merging == Merging::Apart {
+                action.sums = u32::from(combination == StrengthCombination::Sum);
+                if combination == StrengthCombination::Apart {
                     next[term] += 1;
                 }
             }
@@ -386,7 +386,7 @@ impl<'m> Compiler<'m> {
 }
 
 /// Returns the literals of a plain AND of different inputs, in ascending order; `None` for any other condition.
-fn plain(steps: &[Step], inputs_of: &[usize]) -> Option<Vec<u32>> {
+fn plain(steps: &[AntecedentStep], inputs_of: &[usize]) -> Option<Vec<u32>> {
     let (first, others) = steps
         .split_first()
         .filter(|(first, _)| first.op == Op::PUSH)?;

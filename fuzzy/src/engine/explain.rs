@@ -17,7 +17,7 @@ use crate::model::{
     Variable, concludes, type2::Bound,
 };
 use crate::rule::{Condition, Proposition};
-use crate::table::{self, Partial};
+use crate::table::{self, PartialConjunction};
 
 /// The number of steps at which the aggregated set is sampled.
 const STEPS: usize = 200;
@@ -53,15 +53,15 @@ impl Engine {
         let model = self.model();
         let outcomes = self.outcomes_at(inputs)?;
         let explained: Vec<ExplainedInput> = model.inputs.iter().zip(inputs).map(input).collect();
-        let known = Known {
+        let context = ConditionContext {
             model,
             inputs: &explained,
             outcomes: &outcomes,
         };
-        let rules = fired(&known);
+        let rules = fired(&context);
         let outputs = model.outputs.iter().zip(&outcomes);
         let outputs =
-            outputs.map(|(output, outcome)| explain_output(&known, output, outcome, &rules));
+            outputs.map(|(output, outcome)| explain_output(&context, output, outcome, &rules));
         Ok(Explanation {
             outputs: outputs.collect(),
             inputs: explained,
@@ -109,13 +109,13 @@ fn degrees(terms: &[Term], value: f64) -> Vec<Degree> {
 }
 
 /// The values that conditions can read.
-pub(super) struct Known<'a> {
+pub(super) struct ConditionContext<'a> {
     pub(super) model: &'a Model,
     pub(super) inputs: &'a [ExplainedInput],
     pub(super) outcomes: &'a [Outcome],
 }
 
-impl<'a> Known<'a> {
+impl<'a> ConditionContext<'a> {
     /// Returns the input or output with the given name, and its value.
     pub(super) fn variable(&self, name: &str) -> Option<(&'a Variable, Option<f64>)> {
         let inputs = self.model.inputs.iter().zip(self.inputs);
@@ -145,52 +145,55 @@ fn clamped(variable: &Variable, value: f64) -> f64 {
     larger(variable.low, smaller(variable.high, value))
 }
 
-fn fired(known: &Known<'_>) -> Vec<FiredRule> {
+fn fired(context: &ConditionContext<'_>) -> Vec<FiredRule> {
     let mut fired: Vec<FiredRule> = Vec::new();
-    let evaluated: Vec<bool> = known
+    let evaluated: Vec<bool> = context
         .model
         .outputs
         .iter()
-        .map(|output| known.is_evaluated(&output.variable.name))
+        .map(|output| context.is_evaluated(&output.variable.name))
         .collect();
-    let mut degrees = vec![0.0; known.model.rules.len()];
+    let mut degrees = vec![0.0; context.model.rules.len()];
     let lower_strength = |rule: &Rule| {
-        let operators = known.model.operators_of(rule);
-        let degree = holds(&rule.rule.condition, operators, known, Bound::Lower);
+        let operators = context.model.operators_of(rule);
+        let degree = holds(&rule.rule.condition, operators, context, Bound::Lower);
         let strength = rule.rule.weight * degree;
-        if strength >= known.model.least_strength {
+        if strength >= context.model.least_strength {
             strength
         } else {
             0.0
         }
     };
-    let mut blocks: BTreeMap<usize, (Activation, Vec<Partial>)> = BTreeMap::new();
-    for ((rule, degree), index) in known.model.rules.iter().zip(&mut degrees).zip(0..) {
-        let mut outputs = known.model.outputs.iter().zip(&evaluated);
+    let mut blocks: BTreeMap<usize, (Activation, Vec<PartialConjunction>)> = BTreeMap::new();
+    for ((rule, degree), index) in context.model.rules.iter().zip(&mut degrees).zip(0..) {
+        let mut outputs = context.model.outputs.iter().zip(&evaluated);
         let is_evaluated = outputs.any(|(output, evaluated)| *evaluated && concludes(rule, output));
-        if !is_evaluated || !known.model.is_enabled(rule) {
+        if !is_evaluated || !context.model.is_enabled(rule) {
             continue;
         }
-        let operators = known.model.operators_of(rule);
-        *degree = holds(&rule.rule.condition, operators, known, Bound::Upper);
-        let activation = known.model.activation_of(rule);
+        let operators = context.model.operators_of(rule);
+        *degree = holds(&rule.rule.condition, operators, context, Bound::Upper);
+        let activation = context.model.activation_of(rule);
         let (_, strengths) = blocks.entry(rule.block).or_insert((activation, Vec::new()));
-        strengths.push(Partial::new(rule.rule.weight * *degree, index));
+        strengths.push(PartialConjunction::new(rule.rule.weight * *degree, index));
     }
-    let least = known.model.least_strength;
+    let least = context.model.least_strength;
     for (activation, mut strengths) in blocks.into_values() {
         activation.activate(least, &mut strengths);
-        for (strength, index) in strengths.iter().map(Partial::parts) {
+        for (strength, index) in strengths.iter().map(PartialConjunction::parts) {
             let index = index as usize;
             if strength >= least
-                && let Some(rule) = known.model.rules.get(index)
+                && let Some(rule) = context.model.rules.get(index)
             {
                 fired.push(FiredRule {
                     rule: index,
                     text: rule.rule.to_string(),
                     degree: degrees[index],
                     strength,
-                    lower: known.model.reads_type2(rule).then(|| lower_strength(rule)),
+                    lower: context
+                        .model
+                        .reads_type2(rule)
+                        .then(|| lower_strength(rule)),
                 });
             }
         }
@@ -205,13 +208,13 @@ fn fired(known: &Known<'_>) -> Vec<FiredRule> {
 pub(super) fn holds(
     condition: &Condition,
     operators: Operators,
-    known: &Known<'_>,
+    context: &ConditionContext<'_>,
     bound: Bound,
 ) -> f64 {
-    let degree = |part: &Condition| holds(part, operators, known, bound);
+    let degree = |part: &Condition| holds(part, operators, context, bound);
     match condition {
-        Condition::Is(proposition) => proposition_holds(proposition, known, bound),
-        Condition::Not(inner) => 1.0 - holds(inner, operators, known, bound.opposite()),
+        Condition::Is(proposition) => proposition_holds(proposition, context, bound),
+        Condition::Not(inner) => 1.0 - holds(inner, operators, context, bound.opposite()),
         Condition::And(parts) => {
             let joined = parts
                 .iter()
@@ -229,8 +232,12 @@ pub(super) fn holds(
     }
 }
 
-fn proposition_holds(proposition: &Proposition, known: &Known<'_>, bound: Bound) -> f64 {
-    let named = known.variable(&proposition.variable.text);
+fn proposition_holds(
+    proposition: &Proposition,
+    context: &ConditionContext<'_>,
+    bound: Bound,
+) -> f64 {
+    let named = context.variable(&proposition.variable.text);
     let membership = named.and_then(|(variable, value)| {
         let name = &proposition.term.as_ref()?.text;
         let term = variable.terms.iter().find(|term| term.name == *name)?;
@@ -241,20 +248,20 @@ fn proposition_holds(proposition: &Proposition, known: &Known<'_>, bound: Bound)
 }
 
 fn explain_output(
-    known: &Known<'_>,
+    context: &ConditionContext<'_>,
     output: &Output,
     outcome: &Outcome,
     fired: &[FiredRule],
 ) -> ExplainedOutput {
-    let (model, variable) = (known.model, &output.variable);
-    let fired = if known.is_evaluated(&variable.name) {
+    let (model, variable) = (context.model, &output.variable);
+    let fired = if context.is_evaluated(&variable.name) {
         fired
     } else {
         &[]
     };
     let weighted = output.defuzzifier.is_weighted();
     let operators = model.operators_of_output(output);
-    let mut active: Vec<Active<'_>> = Vec::new();
+    let mut active: Vec<ActiveConsequent<'_>> = Vec::new();
     for rule in fired {
         let consequents = model
             .rules
@@ -265,7 +272,7 @@ fn explain_output(
             if consequent.output.text == variable.name
                 && let Some(term) = variable.terms.iter().find(named)
             {
-                active.push(Active {
+                active.push(ActiveConsequent {
                     rule: rule.rule,
                     term,
                     strength: consequent.hedged(rule.strength),
@@ -312,7 +319,7 @@ fn explain_output(
             lower: one.lower,
             share: if whole > 0.0 { one.part / whole } else { 0.0 },
             value: (weighted || discrete)
-                .then(|| number(output, one, known))
+                .then(|| number(output, one, context))
                 .flatten(),
             implied: if weighted || discrete {
                 Vec::new()
@@ -354,7 +361,11 @@ fn explain_output(
 }
 
 /// Returns the number that a rule yields for a Takagi-Sugeno or Tsukamoto output at the values of the inputs.
-fn number(output: &Output, active: &Active<'_>, known: &Known<'_>) -> Option<f64> {
+fn number(
+    output: &Output,
+    active: &ActiveConsequent<'_>,
+    context: &ConditionContext<'_>,
+) -> Option<f64> {
     let (variable, term) = (&output.variable, active.term);
     if output.defuzzifier == Defuzzifier::Tsukamoto {
         let place = term
@@ -370,13 +381,13 @@ fn number(output: &Output, active: &Active<'_>, known: &Known<'_>) -> Option<f64
             constant,
         } => {
             let parts = coefficients.iter().map(|(name, factor)| {
-                let (_, value) = known.variable(name)?;
+                let (_, value) = context.variable(name)?;
                 Some(factor * value?)
             });
             Some(parts.sum::<Option<f64>>()? + constant)
         }
         MembershipFunction::Function { formula } => {
-            let value = |name: &str| known.variable(name).and_then(|(_, value)| value);
+            let value = |name: &str| context.variable(name).and_then(|(_, value)| value);
             let value = formula.evaluate(|name| value(name).unwrap_or(f64::NAN));
             value.is_finite().then_some(value)
         }
@@ -385,7 +396,7 @@ fn number(output: &Output, active: &Active<'_>, known: &Known<'_>) -> Option<f64
 }
 
 /// A consequent of a rule that fired.
-struct Active<'m> {
+struct ActiveConsequent<'m> {
     rule: usize,
     term: &'m Term,
     strength: f64,
@@ -394,7 +405,7 @@ struct Active<'m> {
     part: f64,
 }
 
-impl Active<'_> {
+impl ActiveConsequent<'_> {
     fn degree(&self, operators: Operators, x: f64) -> f64 {
         operators
             .implication
@@ -402,14 +413,14 @@ impl Active<'_> {
     }
 }
 
-fn aggregated(active: &[Active<'_>], operators: Operators, x: f64) -> f64 {
+fn aggregated(active: &[ActiveConsequent<'_>], operators: Operators, x: f64) -> f64 {
     let degrees = active.iter().map(|one| one.degree(operators, x));
     degrees.fold(0.0, |all, degree| operators.aggregation.of(all, degree))
 }
 
 /// Adds the contribution of each consequent at `x`. With maximum as aggregation, only the highest consequent
 /// contributes.
-fn add_parts(active: &mut [Active<'_>], operators: Operators, x: f64) {
+fn add_parts(active: &mut [ActiveConsequent<'_>], operators: Operators, x: f64) {
     if operators.aggregation != Aggregation::Maximum {
         for one in active {
             one.part += one.degree(operators, x);

@@ -17,14 +17,14 @@ use core::ops::Range;
 use smallvec::{SmallVec, smallvec};
 
 use crate::defuzzify::workspace::Workspace;
-use crate::defuzzify::{Integrated, Method, Strengths};
+use crate::defuzzify::{IntegratedSet, Method, Strengths};
 use crate::model::{Model, NoRuleFires};
-use crate::table::{self, Buffers, Partial, Strongest, Table};
-use aligned::Rows;
+use crate::table::{self, Buffers, PartialConjunction, StrongestRule, Table};
+use aligned::AlignedRows;
 use arrays::OwnedTable;
 use bounds::BoundsScratch;
 use chain::Chain;
-use strategy::Single;
+use strategy::SingleRowMethod;
 
 mod aligned;
 mod arrays;
@@ -52,7 +52,7 @@ pub use crate::table::{Outcome, State};
 pub use error::EvaluateError;
 pub use explanation::{Degree, ExplainedInput, ExplainedOutput, Explanation, FiredRule, Share};
 pub use named::NamedOutcomes;
-pub use raising::Said;
+pub use raising::AntecedentProposition;
 pub use sequence::Sequence;
 pub use silent::{Silence, SilentRule};
 pub use uncertain::{Enclosure, Interval, IntervalOutcome};
@@ -101,7 +101,7 @@ struct Stage {
     /// The same rules, compiled to programs; only if that makes a batch faster.
     batch: Option<OwnedTable>,
     /// The method that fires the rules for a single row.
-    single: Single,
+    single: SingleRowMethod,
 }
 
 #[derive(Debug, Clone)]
@@ -182,7 +182,8 @@ impl Scratch {
     }
 }
 
-type RowBuffers<const L: usize> = Buffers<Rows<L>, Vec<Partial<L>>, Vec<Strongest<L>>>;
+type RowBuffers<const L: usize> =
+    Buffers<AlignedRows<L>, Vec<PartialConjunction<L>>, Vec<StrongestRule<L>>>;
 
 impl Engine {
     /// Returns the index of an input; `None` if there is no input with the given name.
@@ -370,19 +371,19 @@ impl Stage {
         let strengths = sizes.strengths as usize;
         let integrated = self.outputs.iter().filter_map(CompiledOutput::integrated);
         let bounds = self.bounds();
-        let cuts = integrated.map(Integrated::cuts);
+        let cuts = integrated.map(IntegratedSet::cuts);
         let cuts = cuts.chain(bounds.map(bounds::Bounds::cuts));
         StageScratch {
             table: Buffers {
-                values: Rows::new(arrays.inputs.len()),
-                degrees: Rows::new(sizes.degrees as usize),
-                alive: vec![Partial::NONE; sizes.alive as usize],
-                partial: vec![Partial::NONE; sizes.partial as usize],
-                next: vec![Partial::NONE; sizes.partial as usize],
-                stack: Rows::new(sizes.stack as usize),
+                values: AlignedRows::new(arrays.inputs.len()),
+                degrees: AlignedRows::new(sizes.degrees as usize),
+                alive: vec![PartialConjunction::NONE; sizes.alive as usize],
+                partial: vec![PartialConjunction::NONE; sizes.partial as usize],
+                next: vec![PartialConjunction::NONE; sizes.partial as usize],
+                stack: AlignedRows::new(sizes.stack as usize),
                 // They are cleared eight at a time.
-                strengths: Rows::new(strengths.next_multiple_of(8)),
-                strongest: vec![Strongest::NONE; self.outputs.len()],
+                strengths: AlignedRows::new(strengths.next_multiple_of(8)),
+                strongest: vec![StrongestRule::NONE; self.outputs.len()],
             },
             // A term crosses two levels of its implication, on its rising and on its falling side.
             workspace: {
@@ -401,23 +402,27 @@ impl Stage {
     fn outcomes(&self, scratch: &mut StageScratch, inputs: &[f64], outcomes: &mut [Outcome]) {
         match &self.single {
             #[cfg(feature = "simd")]
-            Single::Plane(_) => {
+            SingleRowMethod::Plane(_) => {
                 self.single.by_plane(inputs, outcomes);
             }
             #[cfg(feature = "simd")]
-            Single::Vectors(uniform) => {
+            SingleRowMethod::Vectors(uniform) => {
                 self.outcomes_by(scratch, inputs, outcomes, |_, buffers| {
                     let strongest = uniform.fire(&buffers.values, &mut buffers.strengths);
                     buffers.strongest.fill(strongest);
                 });
             }
-            Single::Cells => self.outcomes_by(scratch, inputs, outcomes, |arrays, buffers| {
-                table::fire::<_, _, _, _, 1, true>(arrays, buffers);
-            }),
-            Single::Rules => self.outcomes_by(scratch, inputs, outcomes, |arrays, buffers| {
-                table::fire_row(arrays, buffers);
-            }),
-            Single::Bounds(bounds) => bounds.outcomes(self, scratch, inputs, outcomes),
+            SingleRowMethod::Cells => {
+                self.outcomes_by(scratch, inputs, outcomes, |arrays, buffers| {
+                    table::fire::<_, _, _, _, 1, true>(arrays, buffers);
+                })
+            }
+            SingleRowMethod::Rules => {
+                self.outcomes_by(scratch, inputs, outcomes, |arrays, buffers| {
+                    table::fire_row(arrays, buffers);
+                })
+            }
+            SingleRowMethod::Bounds(bounds) => bounds.outcomes(self, scratch, inputs, outcomes),
         }
     }
 
@@ -451,7 +456,7 @@ impl Stage {
 
 impl CompiledOutput {
     /// Returns the integrator of an output without a closed form.
-    fn integrated(&self) -> Option<&Integrated> {
+    fn integrated(&self) -> Option<&IntegratedSet> {
         match &self.method {
             Method::Integrated(integrated) => Some(integrated),
             Method::Partition(_)

@@ -16,10 +16,10 @@ use crate::table;
 /// A proposition in the antecedent of a rule.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct Said {
+pub struct AntecedentProposition {
     /// The index of the rule in evaluation order, which counts the rules of all stages. It equals `rule` if no output
     /// reads another one.
-    pub place: usize,
+    pub evaluation_index: usize,
     /// The index of the rule among the rules of the model.
     pub rule: usize,
     /// The index of the input. For an output that is read, the number of inputs plus the index of the output.
@@ -36,8 +36,9 @@ pub struct Said {
 
 impl Engine {
     /// Returns the rule that raises an output most, as [`Table::raised_by`](table::Table::raised_by) defines it. The
-    /// result is an index in evaluation order, as [`Said::place`]. `None` if no rule fires, a value is not finite,
-    /// there is no such output, or the model has [type-2 terms](crate::Model::has_type2_terms).
+    /// result is an index in evaluation order, as [`AntecedentProposition::evaluation_index`]. `None` if no rule fires,
+    /// a value is not finite, there is no such output, or the model has
+    /// [type-2 terms](crate::Model::has_type2_terms).
     ///
     /// # Example: the rule that makes the fan fast
     /// ```
@@ -68,7 +69,7 @@ impl Engine {
         output: usize,
         value: f64,
     ) -> Option<usize> {
-        self.rule_of(scratch, inputs, output, Sought::Raises(value))
+        self.rule_of(scratch, inputs, output, RuleCriterion::Raises(value))
     }
 
     /// Returns the rule that contributes most to a proposition about an output, as an index in evaluation order. This
@@ -78,14 +79,14 @@ impl Engine {
         &self,
         scratch: &mut Scratch,
         inputs: &[f64],
-        said: &Said,
+        proposition: &AntecedentProposition,
     ) -> Option<usize> {
-        let output = said.input.checked_sub(self.inputs.len())?;
+        let output = proposition.input.checked_sub(self.inputs.len())?;
         self.rule_of(
             scratch,
             inputs,
             output,
-            Sought::Concludes(said.read.as_ref()?),
+            RuleCriterion::Concludes(proposition.read.as_ref()?),
         )
     }
 
@@ -94,13 +95,13 @@ impl Engine {
         scratch: &mut Scratch,
         inputs: &[f64],
         output: usize,
-        sought: Sought<'_>,
+        criterion: RuleCriterion<'_>,
     ) -> Option<usize> {
         if inputs.len() != self.inputs.len() || self.model.has_type2_terms() {
             return None;
         }
         let Some(chain) = &self.chain else {
-            return rule_of(&self.first, &mut scratch.first, inputs, output, sought);
+            return rule_of(&self.first, &mut scratch.first, inputs, output, criterion);
         };
         let (number, stage, own, rules) = self.stage_of(chain, scratch, inputs, output)?;
         let Scratch {
@@ -116,51 +117,58 @@ impl Engine {
             Some(later_number) => later.get_mut(later_number)?,
         };
         let inputs = values.get(..stage.arrays.inputs.len())?;
-        let rule = rule_of(stage, own_scratch, inputs, own, sought)?;
+        let rule = rule_of(stage, own_scratch, inputs, own, criterion)?;
         Some(rules + rule)
     }
 
     /// Returns the propositions of all rules, in the order of the rules. Within a rule, propositions that occur in few
     /// rules come first, because a proposition that occurs in many rules does not characterise any of them.
-    pub fn propositions(&self) -> Vec<Said> {
+    pub fn propositions(&self) -> Vec<AntecedentProposition> {
         let (first, later) = stages(self.model());
         let mut all = Vec::new();
-        let mut places = 0;
+        let mut evaluated = 0;
         for stage in core::iter::once(&first).chain(&later) {
-            let mut of_stage = self.propositions_of(stage, places);
+            let mut of_stage = self.propositions_of(stage, evaluated);
             let mut rules_of: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-            for said in &of_stage {
-                rules_of.entry(said.literal).or_default().push(said.rule);
+            for proposition in &of_stage {
+                rules_of
+                    .entry(proposition.literal)
+                    .or_default()
+                    .push(proposition.rule);
             }
-            for said in &mut of_stage {
-                if let Some(rules) = rules_of.get_mut(&said.literal) {
+            for proposition in &mut of_stage {
+                if let Some(rules) = rules_of.get_mut(&proposition.literal) {
                     rules.dedup();
-                    said.rules = rules.len();
+                    proposition.rules = rules.len();
                 }
             }
-            of_stage.sort_by_key(|said| (said.rule, said.rules));
+            of_stage.sort_by_key(|proposition| (proposition.rule, proposition.rules));
             all.append(&mut of_stage);
-            places += stage.rules.len();
+            evaluated += stage.rules.len();
         }
         all
     }
 
-    /// Returns the propositions of the rules of a stage; `first_place` is the evaluation index of its first rule.
-    fn propositions_of(&self, stage: &chain::Stage<'_>, first_place: usize) -> Vec<Said> {
+    /// Returns the propositions of the rules of a stage; `first_index` is the evaluation index of its first rule.
+    fn propositions_of(
+        &self,
+        stage: &chain::Stage<'_>,
+        first_index: usize,
+    ) -> Vec<AntecedentProposition> {
         let model = &*stage.model;
         let compiler = Compiler::new(model);
         let inputs = self.inputs.len();
         let mut all = Vec::new();
         let rules = model.rules.iter().zip(&stage.rules);
-        for (place, (found, rule)) in (first_place..).zip(rules) {
+        for (evaluation_index, (found, rule)) in (first_index..).zip(rules) {
             found.rule.condition.visit(&mut |proposition| {
                 let Some((input, ..)) = compiler.key(proposition) else {
                     return;
                 };
                 let read = input.checked_sub(inputs);
                 let read = read.and_then(|read| stage.reads.get(read));
-                let said = Said {
-                    place,
+                let proposition = AntecedentProposition {
+                    evaluation_index,
                     rule: *rule,
                     input: read.map_or(input, |output| inputs + output),
                     read: read.and_then(|_| literal(model.inputs.get(input)?, proposition)),
@@ -168,8 +176,8 @@ impl Engine {
                     literal: compiler.literal(proposition) as usize,
                     rules: 0,
                 };
-                if all.last() != Some(&said) {
-                    all.push(said);
+                if all.last() != Some(&proposition) {
+                    all.push(proposition);
                 }
             });
         }
@@ -179,7 +187,7 @@ impl Engine {
 
 /// The criterion by which a rule is selected.
 #[derive(Clone, Copy)]
-enum Sought<'a> {
+enum RuleCriterion<'a> {
     Raises(f64),
     Concludes(&'a Literal),
 }
@@ -189,7 +197,7 @@ fn rule_of(
     scratch: &mut StageScratch,
     inputs: &[f64],
     output: usize,
-    sought: Sought<'_>,
+    criterion: RuleCriterion<'_>,
 ) -> Option<usize> {
     let StageScratch {
         table: buffers,
@@ -198,11 +206,11 @@ fn rule_of(
     } = scratch;
     let arrays = &stage.arrays;
     let integrate = |index: usize, strengths: &[f64]| stage.integrate(index, strengths, workspace);
-    match sought {
-        Sought::Raises(value) => {
+    match criterion {
+        RuleCriterion::Raises(value) => {
             table::raised_by(arrays, buffers, inputs, (output, value), integrate)
         }
-        Sought::Concludes(literal) => {
+        RuleCriterion::Concludes(literal) => {
             let degree = |x: f64| {
                 let hedges = literal.hedges.iter();
                 hedges.fold(literal.term.membership(x), |degree, hedge| hedge.of(degree))
@@ -238,8 +246,11 @@ fn literal(variable: &Variable, proposition: &Proposition) -> Option<Literal> {
 
 impl Chain {
     /// Appends the terms of propositions about outputs after the curves of all stages.
-    pub(super) fn conclusions(&mut self, said: &[Said]) {
-        for literal in said.iter().filter_map(|said| said.read.as_ref()) {
+    pub(super) fn conclusions(&mut self, propositions: &[AntecedentProposition]) {
+        for literal in propositions
+            .iter()
+            .filter_map(|proposition| proposition.read.as_ref())
+        {
             self.flat.curve(0, &literal.term, &literal.hedges);
         }
     }

@@ -6,16 +6,17 @@ use super::arrays::OwnedTable;
 use super::literal::Literals;
 use crate::model::{Activation, Conjunction, Disjunction, Model};
 use crate::table::{
-    Action, Axis, Block, Conjunctions, Dimension, Edge, Hedge, Line, Node, Op, Program, Step,
+    Action, AntecedentStep, Axis, Block, Conjunctions, Dimension, Edge, Hedge, Line, Node, Op,
+    Program,
 };
 
 /// A rule whose names are replaced by indices.
 #[derive(Debug, Clone)]
-pub(super) struct Draft {
+pub(super) struct IndexedRule {
     /// The literals of a plain AND, in ascending order, each of a different input; `None` for any other antecedent and
     /// for rules with hedges.
     pub(super) literals: Option<Vec<u32>>,
-    pub(super) steps: Vec<Step>,
+    pub(super) steps: Vec<AntecedentStep>,
     /// The hedges of the consequents, in the order in which they are applied.
     pub(super) hedges: Vec<Hedge>,
     /// The weight of the rule.
@@ -29,7 +30,7 @@ pub(super) struct Draft {
 
 /// The operators and activation methods with which the rules of a stage fire.
 #[derive(Debug, Clone)]
-pub(super) struct Firing {
+pub(super) struct FiringOperators {
     pub(super) and: Conjunction,
     pub(super) or: Disjunction,
     pub(super) least_strength: f64,
@@ -45,7 +46,7 @@ pub(super) struct FiringBlock {
     pub(super) activation: Activation,
 }
 
-impl Firing {
+impl FiringOperators {
     pub(super) fn of(model: &Model) -> Self {
         let of_model = FiringBlock {
             index: 0,
@@ -71,7 +72,7 @@ impl Firing {
         if blocks.iter().all(is_plain) {
             blocks.clear();
         }
-        Firing {
+        FiringOperators {
             and,
             or,
             least_strength: model.least_strength,
@@ -81,7 +82,7 @@ impl Firing {
 }
 
 /// The literals and actions of a plain AND.
-type Plain<'d> = (&'d [u32], &'d [Action]);
+type PlainConjunction<'d> = (&'d [u32], &'d [Action]);
 
 /// The maximum number of cells of a dense table, and its maximum number of cells per rule.
 const MOST_CELLS: usize = 1 << 16;
@@ -93,14 +94,14 @@ const MOST_ACTIONS_A_CELL: usize = 2;
 const MOST_STEPS_OF_FEW_RULES: usize = 64;
 
 /// Returns whether evaluating all rules is faster than finding those that fire.
-fn are_few(drafts: &[Draft]) -> bool {
+fn are_few(drafts: &[IndexedRule]) -> bool {
     let steps: usize = drafts.iter().map(|draft| draft.steps.len()).sum();
     steps <= MOST_STEPS_OF_FEW_RULES
 }
 
 /// Returns whether a batch may evaluate all rules, each for several rows together. It may not if a firing strength is a
 /// sum of more than two numbers, because their order would differ from that of a single evaluation.
-pub(super) fn may_be_programs(drafts: &[Draft]) -> bool {
+pub(super) fn may_be_programs(drafts: &[IndexedRule]) -> bool {
     let actions = || drafts.iter().flat_map(|draft| &draft.actions);
     let keeps_its_bits = |action: &Action| {
         let same = actions().filter(|other| other.strength == action.strength);
@@ -112,8 +113,8 @@ pub(super) fn may_be_programs(drafts: &[Draft]) -> bool {
 impl OwnedTable {
     /// Adds the rules. The order of `drafts` does not depend on the order of the rules in the model. `unused` is the
     /// index of a firing strength that no output uses.
-    pub(super) fn rules(&mut self, drafts: &[Draft], inputs: &[Literals], unused: u32) {
-        let plain: Vec<Plain<'_>> = drafts
+    pub(super) fn rules(&mut self, drafts: &[IndexedRule], inputs: &[Literals], unused: u32) {
+        let plain: Vec<PlainConjunction<'_>> = drafts
             .iter()
             .filter_map(|draft| Some((draft.literals.as_deref()?, &*draft.actions)))
             .collect();
@@ -144,7 +145,7 @@ impl OwnedTable {
     }
 
     /// Adds the rules of blocks in the order of `drafts`.
-    pub(super) fn blocks(&mut self, blocks: &[FiringBlock], drafts: &[Draft]) {
+    pub(super) fn blocks(&mut self, blocks: &[FiringBlock], drafts: &[IndexedRule]) {
         for block in blocks {
             let first_program = self.programs.len() as u32;
             let mut latest = None;
@@ -169,18 +170,21 @@ impl OwnedTable {
 
     /// Adds a rule as a program. The literals of a plain AND are in the same order as in a table, to give the same
     /// bits.
-    pub(super) fn program(&mut self, draft: &Draft) {
+    pub(super) fn program(&mut self, draft: &IndexedRule) {
         match &draft.literals {
             Some(literals) => {
                 let ops = core::iter::once(Op::PUSH).chain(core::iter::repeat(Op::AND_LITERAL));
                 let steps = literals.iter().zip(ops);
-                self.program_of(draft, steps.map(|(&literal, op)| Step { op, literal }));
+                self.program_of(
+                    draft,
+                    steps.map(|(&literal, op)| AntecedentStep { op, literal }),
+                );
             }
             None => self.program_of(draft, draft.steps.iter().copied()),
         }
     }
 
-    fn program_of(&mut self, draft: &Draft, steps: impl Iterator<Item = Step>) {
+    fn program_of(&mut self, draft: &IndexedRule, steps: impl Iterator<Item = AntecedentStep>) {
         let (first_step, first_action) = (self.steps.len(), self.actions.len());
         let first_hedge = self.hedges.len();
         self.steps.extend(steps);
@@ -201,7 +205,7 @@ impl OwnedTable {
     }
 
     /// Adds a dense table; `None` if it would have too many cells.
-    fn dense(&mut self, plain: &[Plain<'_>], inputs: &[Literals]) -> Option<()> {
+    fn dense(&mut self, plain: &[PlainConjunction<'_>], inputs: &[Literals]) -> Option<()> {
         let used = |input: &Literals, literals: &[u32]| {
             let range = input.first..input.first + input.count;
             let literal = literals.iter().find(|literal| range.contains(literal));
@@ -315,7 +319,7 @@ impl OwnedTable {
     /// Adds the node of a trie for rules that share their first `depth` literals. Returns its index, and the maximum
     /// size of the stack of nodes during a traversal. The stack contains either all children of the node, of which the
     /// last one is visited first, or fewer children and the nodes below one of them.
-    fn node(&mut self, rules: &[Plain<'_>], depth: usize) -> (u32, u32) {
+    fn node(&mut self, rules: &[PlainConjunction<'_>], depth: usize) -> (u32, u32) {
         let node = self.nodes.len();
         self.nodes.push(Node::default());
         let ended = rules
@@ -328,7 +332,7 @@ impl OwnedTable {
             self.actions.extend_from_slice(actions);
         }
         let end_action = self.actions.len() as u32;
-        let next = |rule: &Plain<'_>| rule.0.get(depth).copied();
+        let next = |rule: &PlainConjunction<'_>| rule.0.get(depth).copied();
         let mut children = Vec::new();
         let mut most_open = 0;
         for group in further.chunk_by(|a, b| next(a) == next(b)) {

@@ -33,18 +33,18 @@ pub struct Sequence<'e> {
     engine: &'e Engine,
     scratch: Scratch,
     outcomes: Vec<Outcome>,
-    previous: Previous,
+    previous: PreviousValues,
 }
 
 /// The values of the outputs in the previous row.
 #[derive(Debug, Clone)]
-pub(super) struct Previous {
+pub(super) struct PreviousValues {
     /// Whether each output keeps its previous value.
     keeps: Vec<bool>,
     values: Vec<Option<f64>>,
 }
 
-impl Previous {
+impl PreviousValues {
     /// Replaces the outcome of an output by its previous value if no rule fires, and stores its value for the next row.
     #[inline(always)]
     pub(super) fn keep(&mut self, output: usize, outcome: &mut Outcome) {
@@ -83,7 +83,7 @@ impl<'e> Sequence<'e> {
             engine,
             scratch: engine.scratch(),
             outcomes: vec![Outcome::default(); engine.outputs.len()],
-            previous: Previous {
+            previous: PreviousValues {
                 keeps: outputs.map(Output::keeps_previous).collect(),
                 values: vec![None; engine.outputs.len()],
             },

@@ -8,7 +8,7 @@ use core::fmt;
 
 use super::{
     Engine, EvaluateError, Explanation,
-    explain::{Known, holds},
+    explain::{ConditionContext, holds},
 };
 use crate::{
     model::{Operators, Rule, concludes, type2::Bound},
@@ -108,7 +108,7 @@ impl Engine {
         let model = self.model();
         let inputs: Vec<f64> = explanation.inputs.iter().map(|input| input.given).collect();
         let outcomes = self.outcomes_at(&inputs)?;
-        let known = Known {
+        let context = ConditionContext {
             model,
             inputs: &explanation.inputs,
             outcomes: &outcomes,
@@ -119,14 +119,14 @@ impl Engine {
         let silent = silent.map(|(index, rule)| SilentRule {
             rule: index,
             text: rule.rule.to_string(),
-            silence: silence(rule, &known),
+            silence: silence(rule, &context),
         });
         Ok(silent.collect())
     }
 }
 
-fn silence(rule: &Rule, known: &Known<'_>) -> Silence {
-    let model = known.model;
+fn silence(rule: &Rule, context: &ConditionContext<'_>) -> Silence {
+    let model = context.model;
     if !model.is_enabled(rule) {
         return Silence::Disabled;
     }
@@ -139,10 +139,10 @@ fn silence(rule: &Rule, known: &Known<'_>) -> Silence {
             .iter()
             .filter(|output| concludes(rule, output))
     };
-    if !concluded().any(|output| known.is_evaluated(&output.variable.name)) {
+    if !concluded().any(|output| context.is_evaluated(&output.variable.name)) {
         let mut reads = concluded().flat_map(|output| model.reads(&output.variable.name));
         let unknown = reads.find(|name| {
-            known
+            context
                 .variable(name)
                 .is_none_or(|(_, value)| value.is_none())
         });
@@ -151,23 +151,27 @@ fn silence(rule: &Rule, known: &Known<'_>) -> Silence {
         };
     }
     let operators = model.operators_of(rule);
-    let degree = holds(&rule.rule.condition, operators, known, Bound::Upper);
+    let degree = holds(&rule.rule.condition, operators, context, Bound::Upper);
     let strength = rule.rule.weight * degree;
     if strength > 0.0 {
         return Silence::Activation { strength };
     }
-    let condition = zero(&rule.rule.condition, operators, known);
+    let condition = zero(&rule.rule.condition, operators, context);
     Silence::Condition {
         condition: condition.to_string(),
     }
 }
 
 /// Returns the first part of an AND that has degree 0 and therefore makes the whole condition 0.
-fn zero<'c>(condition: &'c Condition, operators: Operators, known: &Known<'_>) -> &'c Condition {
+fn zero<'c>(
+    condition: &'c Condition,
+    operators: Operators,
+    context: &ConditionContext<'_>,
+) -> &'c Condition {
     let Condition::And(parts) = condition else {
         return condition;
     };
     let mut parts = parts.iter();
-    let first = parts.find(|part| holds(part, operators, known, Bound::Upper) <= 0.0);
-    first.map_or(condition, |part| zero(part, operators, known))
+    let first = parts.find(|part| holds(part, operators, context, Bound::Upper) <= 0.0);
+    first.map_or(condition, |part| zero(part, operators, context))
 }

@@ -22,7 +22,7 @@
 //!
 //! # How firing strengths of rules with the same consequent are combined
 //!
-//! | defuzzifier and operators | [`Merging`] |
+//! | defuzzifier and operators | [`StrengthCombination`] |
 //! |---|---|
 //! | weighted average, weighted sum; product with sum or bounded sum | `Sum` |
 //! | maximum, since every implication is monotone in the strength | `Largest` |
@@ -40,7 +40,7 @@
 //! | ANDs in larger tables | [`Conjunctions::Trie`] | `table/conjunctions.rs` | always possible |
 //! | any other conditions, and ANDs of small rule sets | programs | `table/firing.rs` | always possible |
 //!
-//! | evaluation | [`Single`] | file | when | ns |
+//! | evaluation | [`SingleRowMethod`] | file | when | ns |
 //! |---|---|---|---|---|
 //! | one row | `Plane` | `engine/vectors/plane.rs` | feature `simd`, a uniform table of 2 inputs and 1 output | 27 |
 //! | one row | `Vectors` | `engine/vectors/uniform.rs` | feature `simd`, a uniform table of 3 or 4 inputs and 1 output | 66 (`four_inputs`) |
@@ -54,7 +54,8 @@ use super::bounds::Bounds;
 #[cfg(feature = "simd")]
 use super::vectors::{Plane, Uniform};
 use crate::defuzzify::{
-    Consequents, Integrated, Joint, Layered, Method, Partition, Prepared, corners, unit,
+    ConsequentOperators, Consequents, IntegratedSet, Method, Partition, PreparedLayers,
+    PreparedSet, corners, unit,
 };
 use crate::model::{Aggregation, Defuzzifier, Implication, Operators, Output, Variable};
 #[cfg(doc)]
@@ -63,7 +64,7 @@ use crate::table::{OfMaxima, Outcome, SetDefuzzifier, has_cells_alone};
 
 /// The method that fires the rules of a stage for a single row.
 #[derive(Debug, Clone)]
-pub(super) enum Single {
+pub(super) enum SingleRowMethod {
     /// A table of two inputs whose rules are fired, and whose output is defuzzified, with vector
     /// instructions.
     #[cfg(feature = "simd")]
@@ -79,17 +80,17 @@ pub(super) enum Single {
     Bounds(alloc::boxed::Box<Bounds>),
 }
 
-impl Single {
+impl SingleRowMethod {
     pub(super) fn of(table: &OwnedTable) -> Self {
         #[cfg(feature = "simd")]
         if let Some(plane) = Plane::new(table) {
-            return Single::Plane(plane.into());
+            return SingleRowMethod::Plane(plane.into());
         } else if let Some(uniform) = Uniform::new(table) {
-            return Single::Vectors(uniform.into());
+            return SingleRowMethod::Vectors(uniform.into());
         }
         match has_cells_alone(table) {
-            true => Single::Cells,
-            false => Single::Rules,
+            true => SingleRowMethod::Cells,
+            false => SingleRowMethod::Rules,
         }
     }
 
@@ -99,22 +100,22 @@ impl Single {
     pub(super) fn by_plane(&self, inputs: &[f64], outcomes: &mut [Outcome]) -> bool {
         match self {
             #[cfg(feature = "simd")]
-            Single::Plane(plane) => {
+            SingleRowMethod::Plane(plane) => {
                 if let (Ok(inputs), [outcome]) = (inputs.try_into(), outcomes) {
                     plane.evaluate(inputs, outcome);
                 }
                 true
             }
             #[cfg(feature = "simd")]
-            Single::Vectors(_) => false,
-            Single::Cells | Single::Rules | Single::Bounds(_) => false,
+            SingleRowMethod::Vectors(_) => false,
+            SingleRowMethod::Cells | SingleRowMethod::Rules | SingleRowMethod::Bounds(_) => false,
         }
     }
 }
 
 /// How firing strengths of the same consequent are combined before the aggregated set is integrated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Merging {
+pub(super) enum StrengthCombination {
     /// By maximum: `max_r min(h_r, mu) = min(max_r h_r, mu)`, and likewise for the other implications.
     Largest,
     /// By sum: `sum_r h_r mu = (sum_r h_r) mu`.
@@ -123,20 +124,25 @@ pub(super) enum Merging {
     Apart,
 }
 
-impl Merging {
+impl StrengthCombination {
     pub(super) fn of(method: &Method, operators: Operators) -> Self {
         match method {
-            Method::Sugeno { .. } => return Merging::Sum,
-            Method::Tsukamoto(_) => return Merging::Apart,
+            Method::Sugeno { .. } => return StrengthCombination::Sum,
+            Method::Tsukamoto(_) => return StrengthCombination::Apart,
             Method::Partition(_)
             | Method::Layered(_)
             | Method::Moments(_)
             | Method::Prepared(_)
             | Method::Integrated(_) => {}
         }
-        match (operators.aggregation, Activated::by(operators.implication)) {
-            (Aggregation::Maximum, _) => Merging::Largest,
-            (Aggregation::Sum | Aggregation::BoundedSum, Activated::Scaled) => Merging::Sum,
+        match (
+            operators.aggregation,
+            ImplicationEffect::by(operators.implication),
+        ) {
+            (Aggregation::Maximum, _) => StrengthCombination::Largest,
+            (Aggregation::Sum | Aggregation::BoundedSum, ImplicationEffect::Scaled) => {
+                StrengthCombination::Sum
+            }
             (
                 Aggregation::Sum
                 | Aggregation::BoundedSum
@@ -145,14 +151,14 @@ impl Merging {
                 | Aggregation::Einstein
                 | Aggregation::Hamacher
                 | Aggregation::NilpotentMaximum,
-                Activated::Cut | Activated::Scaled | Activated::Otherwise,
-            ) => Merging::Apart,
+                ImplicationEffect::Cut | ImplicationEffect::Scaled | ImplicationEffect::Otherwise,
+            ) => StrengthCombination::Apart,
         }
     }
 }
 
 /// The effect of an implication on a term.
-enum Activated {
+enum ImplicationEffect {
     /// The term is cut off at the firing strength.
     Cut,
     /// The term is scaled by the firing strength.
@@ -161,39 +167,39 @@ enum Activated {
     Otherwise,
 }
 
-impl Activated {
+impl ImplicationEffect {
     fn by(implication: Implication) -> Self {
         match implication {
-            Implication::Minimum => Activated::Cut,
-            Implication::Product => Activated::Scaled,
+            Implication::Minimum => ImplicationEffect::Cut,
+            Implication::Product => ImplicationEffect::Scaled,
             Implication::BoundedDifference
             | Implication::Drastic
             | Implication::Einstein
             | Implication::Hamacher
-            | Implication::NilpotentMinimum => Activated::Otherwise,
+            | Implication::NilpotentMinimum => ImplicationEffect::Otherwise,
         }
     }
 }
 
 /// The aggregation of two activated terms.
-enum Aggregated {
+enum AggregationEffect {
     Maximum,
     Sum,
     /// Any other aggregation, which has no closed form.
     Otherwise,
 }
 
-impl Aggregated {
+impl AggregationEffect {
     fn by(aggregation: Aggregation) -> Self {
         match aggregation {
-            Aggregation::Maximum => Aggregated::Maximum,
-            Aggregation::Sum => Aggregated::Sum,
+            Aggregation::Maximum => AggregationEffect::Maximum,
+            Aggregation::Sum => AggregationEffect::Sum,
             Aggregation::BoundedSum
             | Aggregation::ProbabilisticSum
             | Aggregation::Drastic
             | Aggregation::Einstein
             | Aggregation::Hamacher
-            | Aggregation::NilpotentMaximum => Aggregated::Otherwise,
+            | Aggregation::NilpotentMaximum => AggregationEffect::Otherwise,
         }
     }
 }
@@ -229,11 +235,11 @@ fn method_of_set(output: &Output, operators: Operators, defuzzifier: SetDefuzzif
         (Some(_), _) | (None, true) => None,
     };
     closed.unwrap_or_else(|| {
-        let joint = Joint {
+        let operators = ConsequentOperators {
             implication: operators.implication,
             aggregation: operators.aggregation,
         };
-        Method::Integrated(Integrated::new(output, joint, defuzzifier))
+        Method::Integrated(IntegratedSet::new(output, operators, defuzzifier))
     })
 }
 
@@ -247,15 +253,15 @@ fn closed_form(
     } = &output.variable;
     let range = (*low, *high);
     let about = (low + 0.5 * (high - low), unit(high - low));
-    let scales = match Activated::by(operators.implication) {
-        Activated::Cut => false,
-        Activated::Scaled => true,
-        Activated::Otherwise => return None,
+    let scales = match ImplicationEffect::by(operators.implication) {
+        ImplicationEffect::Cut => false,
+        ImplicationEffect::Scaled => true,
+        ImplicationEffect::Otherwise => return None,
     };
-    let sums = match Aggregated::by(operators.aggregation) {
-        Aggregated::Maximum => false,
-        Aggregated::Sum => true,
-        Aggregated::Otherwise => return None,
+    let sums = match AggregationEffect::by(operators.aggregation) {
+        AggregationEffect::Maximum => false,
+        AggregationEffect::Sum => true,
+        AggregationEffect::Otherwise => return None,
     };
     let is_centroid = match defuzzifier {
         SetDefuzzifier::Centroid => true,
@@ -268,11 +274,11 @@ fn closed_form(
     {
         return Some(Method::Partition(partition));
     }
-    let prepared = Prepared::new(terms, range, (scales, sums), defuzzifier)?;
+    let prepared = PreparedSet::new(terms, range, (scales, sums), defuzzifier)?;
     let are_straight = || terms.iter().all(|term| corners(term).is_some());
     Some(match (is_centroid, scales, sums) {
         (true, true, true) => Method::Moments(prepared.moments(about.1)),
-        (true, false, false) if are_straight() => match Layered::new(&prepared, about) {
+        (true, false, false) if are_straight() => match PreparedLayers::new(&prepared, about) {
             Some(layered) => Method::Layered(layered),
             None => Method::Prepared(prepared),
         },

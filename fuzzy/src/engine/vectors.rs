@@ -50,16 +50,16 @@ impl Cuts {
 
 /// The conjunctions that are implemented with vectors.
 #[derive(Debug, Clone, Copy)]
-enum And {
+enum VectorConjunction {
     Minimum,
     Product,
 }
 
-impl And {
+impl VectorConjunction {
     fn of(table: &OwnedTable) -> Option<Self> {
         match table.and() {
-            Conjunction::Minimum => Some(And::Minimum),
-            Conjunction::Product => Some(And::Product),
+            Conjunction::Minimum => Some(VectorConjunction::Minimum),
+            Conjunction::Product => Some(VectorConjunction::Product),
             Conjunction::BoundedDifference
             | Conjunction::Drastic
             | Conjunction::Einstein
@@ -71,8 +71,8 @@ impl And {
     #[inline(always)]
     fn both<S: Simd>(self, one: f64x4<S>, other: f64x4<S>) -> f64x4<S> {
         match self {
-            And::Minimum => one.min(other),
-            And::Product => one * other,
+            VectorConjunction::Minimum => one.min(other),
+            VectorConjunction::Product => one * other,
         }
     }
 

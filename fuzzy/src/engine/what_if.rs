@@ -103,7 +103,7 @@ impl Engine {
                 .partition(|place| *place < value);
             let below: Vec<f64> = below.into_iter().rev().collect();
             for (places, is_below) in [(below, true), (above, false)] {
-                let walk = Walk {
+                let search = ChangeSearch {
                     engine: self,
                     inputs,
                     index,
@@ -112,9 +112,9 @@ impl Engine {
                     is_below,
                     now: &now,
                 };
-                found.extend(walk.term(&places));
+                found.extend(search.term(&places));
                 for output in 0..now.len() {
-                    found.extend(walk.rule(&places, output));
+                    found.extend(search.rule(&places, output));
                 }
             }
         }
@@ -142,7 +142,7 @@ fn places(variable: &Variable) -> Vec<f64> {
 }
 
 /// A search from the value of an input towards one end of its range.
-struct Walk<'a> {
+struct ChangeSearch<'a> {
     engine: &'a Engine,
     inputs: &'a [f64],
     index: usize,
@@ -152,7 +152,7 @@ struct Walk<'a> {
     now: &'a [Outcome],
 }
 
-impl Walk<'_> {
+impl ChangeSearch<'_> {
     fn term(&self, places: &[f64]) -> Option<Change> {
         let strongest = |x: f64| {
             let terms = self.variable.terms.iter();

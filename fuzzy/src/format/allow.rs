@@ -6,7 +6,7 @@ use core::ops::Range;
 use super::optional_text;
 use crate::{
     diagnostic::{Diagnostic, all_of, duplicate},
-    model::Allowed,
+    model::AllowedFinding,
     tree::Node,
 };
 
@@ -37,10 +37,10 @@ pub(super) fn read(
     node: &Node,
     spans: &mut Vec<Range<usize>>,
     findings: &mut Vec<Diagnostic>,
-) -> Vec<Allowed> {
+) -> Vec<AllowedFinding> {
     let help = format!("write `allow: [{ENTRY}]`, with an entry for each finding");
     let items = node.items("`allow`", &help, findings).unwrap_or_default();
-    let mut all: Vec<Allowed> = Vec::new();
+    let mut all: Vec<AllowedFinding> = Vec::new();
     for (i, item) in items.iter().enumerate() {
         let Some(allowed) = entry(item, i + 1, findings) else {
             continue;
@@ -60,7 +60,7 @@ pub(super) fn read(
 
 const ENTRY: &str = "{finding: jump, because: limits of the regulation}";
 
-fn entry(node: &Node, number: usize, findings: &mut Vec<Diagnostic>) -> Option<Allowed> {
+fn entry(node: &Node, number: usize, findings: &mut Vec<Diagnostic>) -> Option<AllowedFinding> {
     let what = format!("entry {number} of `allow`");
     let fields = node.fields(&what, &KEYS, &format!("write `{ENTRY}`"), findings)?;
     let code = "name a finding of `check`: `finding: jump`";
@@ -86,14 +86,14 @@ fn entry(node: &Node, number: usize, findings: &mut Vec<Diagnostic>) -> Option<A
         findings.push(Diagnostic::error("missing-key", node.span.clone(), message).help(reason));
         return None;
     }
-    Some(Allowed {
+    Some(AllowedFinding {
         finding: code?.into(),
         because,
     })
 }
 
 /// Returns the value of the key `allow`; `None` if the author accepts no findings.
-pub(super) fn write(allow: &[Allowed]) -> Option<Node> {
+pub(super) fn write(allow: &[AllowedFinding]) -> Option<Node> {
     let entries = allow.iter().map(|one| {
         Node::mapping([
             ("finding", Node::text(one.finding.as_str())),

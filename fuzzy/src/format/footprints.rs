@@ -11,7 +11,7 @@ use super::{TermSpans, VariableSpans};
 use crate::{
     diagnostic::Diagnostic,
     model::{
-        Lower, MembershipFunction, Term, Variable,
+        LowerFunction, MembershipFunction, Term, Variable,
         footprint::{self, Footprint, NoFootprint},
     },
     tree::{Fields, Node, Value},
@@ -87,7 +87,7 @@ fn with(term: Term, (upper, lower): Footprint, spans: &mut TermSpans) -> Term {
     spans.lower = Some(lower_spans.into());
     Term {
         membership_function: upper,
-        lower: Some(Lower {
+        lower: Some(LowerFunction {
             height: term.height * lower.height,
             ..lower
         }),

@@ -99,7 +99,7 @@ fn read_lacking(
 /// The readable part of a rule set, for editors.
 #[doc(hidden)]
 #[derive(Debug, Clone, PartialEq)]
-pub struct Partial {
+pub struct PartialModel {
     /// The parts that could be read. Of a part that could not be read, only the name is included.
     pub model: Model,
     /// The positions of the parts of the model.
@@ -111,7 +111,7 @@ pub struct Partial {
 
 /// Reads as much of a model as possible from a tree; `None` if there are no inputs and outputs.
 #[doc(hidden)]
-pub fn read_partly(tree: &Node) -> Option<Partial> {
+pub fn read_partly(tree: &Node) -> Option<PartialModel> {
     let mut spans = Spans::default();
     let mut findings = Vec::new();
     let tree = lists::to_mappings(tree, &mut findings);
@@ -120,7 +120,7 @@ pub fn read_partly(tree: &Node) -> Option<Partial> {
     let has_unread = |variable: &VariableSpans| {
         variable.partition.is_empty() && variable.terms.iter().any(|term| term.unread)
     };
-    Some(Partial {
+    Some(PartialModel {
         model,
         names_unread: spans.rules_unread || variables.any(has_unread),
         spans,

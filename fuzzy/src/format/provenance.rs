@@ -5,7 +5,7 @@ use alloc::{format, string::String, vec::Vec};
 use super::optional_text;
 use crate::{
     diagnostic::Diagnostic,
-    model::{DataFile, LossChange, Step},
+    model::{DataFile, LossChange, ProvenanceStep},
     tree::{Fields, Node},
 };
 
@@ -17,7 +17,7 @@ pub(super) const DATA_KEYS: [&str; 2] = ["file", "sha256"];
 
 pub(super) const LOSS_KEYS: [&str; 3] = ["name", "before", "after"];
 
-pub(super) fn read(node: &Node, findings: &mut Vec<Diagnostic>) -> Vec<Step> {
+pub(super) fn read(node: &Node, findings: &mut Vec<Diagnostic>) -> Vec<ProvenanceStep> {
     let help = "write `provenance: [{command: by hand}]`, with an entry for each step";
     let items = node
         .items("`provenance`", help, findings)
@@ -27,7 +27,7 @@ pub(super) fn read(node: &Node, findings: &mut Vec<Diagnostic>) -> Vec<Step> {
     steps.collect()
 }
 
-fn step(node: &Node, number: usize, findings: &mut Vec<Diagnostic>) -> Option<Step> {
+fn step(node: &Node, number: usize, findings: &mut Vec<Diagnostic>) -> Option<ProvenanceStep> {
     let what = format!("step {number} of the provenance");
     let help = "write the command that made the rule set: `{command: by hand}`";
     let fields = node.fields(&what, &KEYS, help, findings)?;
@@ -37,11 +37,11 @@ fn step(node: &Node, number: usize, findings: &mut Vec<Diagnostic>) -> Option<St
         let text = node.words(&format!("`{key}` of {what}"), &help, findings)?;
         Some(text.text.clone())
     };
-    let mut step = Step {
+    let mut step = ProvenanceStep {
         command: optional_text(&fields, "command", findings)?,
         note: optional_text(&fields, "note", findings),
         result: optional_text(&fields, "result", findings),
-        ..Step::default()
+        ..ProvenanceStep::default()
     };
     for (key, number) in [("rows", &mut step.rows), ("seed", &mut step.seed)] {
         *number = fields
@@ -110,12 +110,12 @@ fn loss(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<LossC
 }
 
 /// Returns the steps in the format of a file; `None` if there are no steps.
-pub(super) fn write(steps: &[Step]) -> Option<Node> {
+pub(super) fn write(steps: &[ProvenanceStep]) -> Option<Node> {
     let steps: Vec<Node> = steps.iter().map(write_step).collect();
     (!steps.is_empty()).then(|| Node::list(steps))
 }
 
-fn write_step(step: &Step) -> Node {
+fn write_step(step: &ProvenanceStep) -> Node {
     let text = |text: &String| Node::text(text.as_str());
     let mut entries: Vec<(&str, Node)> = Vec::from([("command", text(&step.command))]);
     if !step.data.is_empty() {

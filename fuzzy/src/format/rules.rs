@@ -10,7 +10,7 @@ use core::ops::Range;
 use super::{RuleSpans, Spans, optional_text};
 use crate::{
     diagnostic::Diagnostic,
-    model::{Beaten, Model, Rule, Variable},
+    model::{Model, RejectedConsequent, Rule, Variable},
     rule::{self, Condition, Owner},
     tree::{Fields, Node, Scalar, Value},
 };
@@ -168,8 +168,8 @@ fn one(
         let help = format!("write `against: [{BEATEN}]`");
         let items = node.items(&what, &help, findings).unwrap_or_default();
         for item in items {
-            if let Some((beaten, term, degree)) = beaten(&what, item, findings) {
-                found.against.push(beaten);
+            if let Some((rejected, term, degree)) = rejected(&what, item, findings) {
+                found.against.push(rejected);
                 spans.against.push(degree);
                 spans.against_terms.push(term);
             }
@@ -201,11 +201,11 @@ fn colon(what: &str, key: &Node, value: &Node) -> Option<Diagnostic> {
 }
 
 /// Reads `{term: high, degree: 0.4, support: 3}`; also returns the positions of the term and the degree.
-fn beaten(
+fn rejected(
     what: &str,
     node: &Node,
     findings: &mut Vec<Diagnostic>,
-) -> Option<(Beaten, Range<usize>, Range<usize>)> {
+) -> Option<(RejectedConsequent, Range<usize>, Range<usize>)> {
     let help = &format!("write `{BEATEN}`");
     let fields = node.fields(what, &["term", "degree", "support"], help, findings)?;
     let term = fields.require("term", help, findings);
@@ -217,12 +217,12 @@ fn beaten(
     let support = fields
         .require("support", help, findings)
         .and_then(|node| node.whole(&format!("the support in {what}"), 0, findings));
-    let beaten = Beaten {
+    let rejected = RejectedConsequent {
         term: term?.text.to_string(),
         degree: degree?,
         support: support?,
     };
-    Some((beaten, term_span, span))
+    Some((rejected, term_span, span))
 }
 
 /// Parses the rule in a scalar, and also returns the position of its weight. Positions are converted to those in the
@@ -259,14 +259,14 @@ pub(super) fn write(rule: &Rule) -> Node {
     entries.extend(rule.confidence.map(|c| ("confidence", Node::number(c))));
     entries.extend(rule.support.map(|s| ("support", whole(s))));
     if !rule.against.is_empty() {
-        let beaten = rule.against.iter().map(|beaten| {
+        let rejected = rule.against.iter().map(|rejected| {
             Node::mapping([
-                ("term", Node::text(beaten.term.as_str())),
-                ("degree", Node::number(beaten.degree)),
-                ("support", whole(beaten.support)),
+                ("term", Node::text(rejected.term.as_str())),
+                ("degree", Node::number(rejected.degree)),
+                ("support", whole(rejected.support)),
             ])
         });
-        entries.push(("against", Node::list(beaten.collect())));
+        entries.push(("against", Node::list(rejected.collect())));
     }
     entries.extend(rule.note.as_ref().map(|n| ("note", Node::text(n.as_str()))));
     Node::mapping(entries)

@@ -21,7 +21,7 @@ use nodes::{
 };
 
 use crate::{
-    model::{Form, LEAST_STRENGTH, MembershipFunction, Role},
+    model::{LEAST_STRENGTH, MembershipFunction, Role, ShapeForm},
     tree::Node,
 };
 
@@ -477,7 +477,7 @@ fn term() -> Node {
 }
 
 /// Returns the schema of the parameters of a shape, with all its notations.
-fn shape(form: &Form) -> Node {
+fn shape(form: &ShapeForm) -> Node {
     let properties = form.parameters.iter().map(|(name, role)| {
         let mut entries = Vec::from([("type", Node::text("number"))]);
         if *role == Role::Positive {
@@ -610,7 +610,7 @@ fn boolean(description: &str) -> Node {
 }
 
 fn rule() -> Node {
-    let beaten = object(
+    let rejected = object(
         "A consequent that was rejected in favour of the rule's consequent when the rule was learned",
         [
             ("term", text("The term of the rejected consequent")),
@@ -633,7 +633,7 @@ fn rule() -> Node {
         "support" => whole("The number of samples that support the rule", 0.0),
         "against" => list(
             "The rejected consequents",
-            Node::mapping(beaten.clone()),
+            Node::mapping(rejected.clone()),
             None,
         ),
         _ => text("A remark"),

@@ -9,7 +9,7 @@ use alloc::{
 use super::footprints;
 use crate::{
     diagnostic::{Diagnostic, all_of, suggest},
-    model::{Form, Formula, MembershipFunction, Parts, document::TermSpans},
+    model::{Formula, MembershipFunction, ShapeForm, ShapeParts, document::TermSpans},
     rule::Name,
     tree::{Entry, Fields, Node, Value},
 };
@@ -91,7 +91,7 @@ pub(super) fn read(
 }
 
 fn by_form(
-    form: &Form,
+    form: &ShapeForm,
     node: &Node,
     spans: &mut TermSpans,
     findings: &mut Vec<Diagnostic>,
@@ -160,7 +160,7 @@ fn by_form(
 }
 
 /// Returns a single finding for several parameters with other names, such as `{low: 1, mid: 2, high: 3}`.
-fn other_parameters(form: &Form, fields: &Fields<'_>) -> Diagnostic {
+fn other_parameters(form: &ShapeForm, fields: &Fields<'_>) -> Diagnostic {
     let names = form.names();
     let unknown: Vec<&Entry<'_>> = fields.unknown().collect();
     let others: Vec<&str> = unknown.iter().map(|entry| entry.key).collect();
@@ -192,7 +192,7 @@ fn other_parameters(form: &Form, fields: &Fields<'_>) -> Diagnostic {
 }
 
 /// Returns the notation of the shape for messages.
-fn spelling(form: &Form) -> String {
+fn spelling(form: &ShapeForm) -> String {
     let names = form.names();
     let list = names.join(", ");
     match names.as_slice() {
@@ -321,7 +321,7 @@ fn linear(
 pub(super) fn write(shape: &MembershipFunction) -> (&'static str, Node) {
     let numbers = |values: &[f64]| Node::list(values.iter().copied().map(Node::number).collect());
     match shape.parts() {
-        Parts::Fixed(form, values) => {
+        ShapeParts::Fixed(form, values) => {
             let value = match values.as_slice() {
                 [only] => Node::number(*only),
                 places if form.as_list() => numbers(places),
@@ -332,12 +332,12 @@ pub(super) fn write(shape: &MembershipFunction) -> (&'static str, Node) {
             };
             (form.name, value)
         }
-        Parts::Points(points) => {
+        ShapeParts::Points(points) => {
             let points = points.iter().map(|&(x, degree)| numbers(&[x, degree]));
             ("piecewise", Node::list(points.collect()))
         }
-        Parts::Formula(formula) => ("function", Node::text(formula.to_string())),
-        Parts::Linear(coefficients, constant) => {
+        ShapeParts::Formula(formula) => ("function", Node::text(formula.to_string())),
+        ShapeParts::Linear(coefficients, constant) => {
             let entries = coefficients.iter().map(|(name, c)| (name.as_str(), *c));
             let entries = entries.chain([("constant", constant)]);
             (

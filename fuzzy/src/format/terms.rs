@@ -9,7 +9,7 @@ use alloc::{
 use super::{TermSpans, VariableSpans, footprints, shapes};
 use crate::{
     diagnostic::Diagnostic,
-    model::{Lower, MembershipFunction, Term, Variable, footprint::Footprint},
+    model::{LowerFunction, MembershipFunction, Term, Variable, footprint::Footprint},
     tree::{Entry, Fields, Node, Value},
 };
 
@@ -185,7 +185,7 @@ fn interval(
         name,
         membership_function,
         height,
-        lower: Some(Lower {
+        lower: Some(LowerFunction {
             membership_function: lower.0,
             height: lower.1,
         }),

@@ -9,8 +9,8 @@ use crate::{
     Engine,
     engine::State,
     model::{
-        Activation, Beaten, Block, Comparison, Defuzzifier, Implication, MembershipFunction,
-        NoRuleFires, Output, Rule, Sampling, SamplingRule, Variable,
+        Activation, Block, Comparison, Defuzzifier, Implication, MembershipFunction, NoRuleFires,
+        Output, RejectedConsequent, Rule, Sampling, SamplingRule, Variable,
     },
     rule::{self, Condition, DEEPEST_NESTING, Hedge},
 };
@@ -123,12 +123,12 @@ const MISTAKES: [Mistake; 39] = [
     }),
     ("value-outside-range", |m| m.rules[0].confidence = Some(1.5)),
     ("value-outside-range", |m| {
-        let beaten = Beaten {
+        let rejected = RejectedConsequent {
             term: "other".into(),
             degree: -0.5,
             support: 1,
         };
-        m.rules[0].against = Vec::from([beaten]);
+        m.rules[0].against = Vec::from([rejected]);
     }),
     ("wrong-term", |m| {
         let coefficients = Vec::new();

@@ -53,7 +53,7 @@ pub(super) fn parse(text: &str) -> Result<Formula, Box<Diagnostic>> {
         let rest = after_space(rest);
         match rest {
             "" => Ok(expression),
-            _ => wrong(rest, Wrong::Operator),
+            _ => wrong(rest, FormulaMistakeKind::Operator),
         }
     });
     let whole = |message: String, help: &str| {
@@ -78,15 +78,15 @@ pub(super) fn parse(text: &str) -> Result<Formula, Box<Diagnostic>> {
     }
 }
 
-type Step<'a, T> = IResult<&'a str, T, Mistake<'a>>;
+type ParseResult<'a, T> = IResult<&'a str, T, FormulaMistake<'a>>;
 
 /// A syntax error, with the remaining text at the position where it was detected.
-struct Mistake<'a> {
+struct FormulaMistake<'a> {
     rest: &'a str,
-    kind: Wrong<'a>,
+    kind: FormulaMistakeKind<'a>,
 }
 
-enum Wrong<'a> {
+enum FormulaMistakeKind<'a> {
     /// A number, name or bracket was expected.
     Operand,
     /// An operator or the end was expected.
@@ -107,12 +107,12 @@ enum Wrong<'a> {
     TooLong,
 }
 
-impl<'a> ParseError<&'a str> for Mistake<'a> {
+impl<'a> ParseError<&'a str> for FormulaMistake<'a> {
     // nom's own parsers are always optional here, so their errors are always replaced.
     fn from_error_kind(rest: &'a str, _: ErrorKind) -> Self {
-        Mistake {
+        FormulaMistake {
             rest,
-            kind: Wrong::Operand,
+            kind: FormulaMistakeKind::Operand,
         }
     }
 
@@ -121,8 +121,8 @@ impl<'a> ParseError<&'a str> for Mistake<'a> {
     }
 }
 
-fn wrong<'a, T>(rest: &'a str, kind: Wrong<'a>) -> Result<T, Err<Mistake<'a>>> {
-    Err(Err::Failure(Mistake { rest, kind }))
+fn wrong<'a, T>(rest: &'a str, kind: FormulaMistakeKind<'a>) -> Result<T, Err<FormulaMistake<'a>>> {
+    Err(Err::Failure(FormulaMistake { rest, kind }))
 }
 
 fn after_space(rest: &str) -> &str {
@@ -195,16 +195,16 @@ struct Parser<'a> {
 impl<'a> Parser<'a> {
     /// Parses an expression whose operators have a precedence of at least `binds`. A single call parses a whole level
     /// of brackets, so that the stack grows only with their nesting.
-    fn level(&mut self, rest: &'a str, binds: u8, depth: usize) -> Step<'a, Expression> {
+    fn level(&mut self, rest: &'a str, binds: u8, depth: usize) -> ParseResult<'a, Expression> {
         if depth > DEEPEST_NESTING {
-            return wrong(after_space(rest), Wrong::TooDeep);
+            return wrong(after_space(rest), FormulaMistakeKind::TooDeep);
         }
         let (mut rest, mut left) = self.signed(rest, binds, depth)?;
         let mut last = None;
         while let Some((operation, after)) = infix(rest, binds) {
             let own = operation.binds().unwrap_or(0);
             if own == COMPARISONS && last == Some(own) {
-                return wrong(after_space(rest), Wrong::Chain);
+                return wrong(after_space(rest), FormulaMistakeKind::Chain);
             }
             last = Some(own);
             // A power is right-associative, and its exponent may have a sign: `2^-x^2` is `2^(-(x^2))`.
@@ -219,7 +219,7 @@ impl<'a> Parser<'a> {
     }
 
     /// Parses an operand, or `not` or `-` with its operand.
-    fn signed(&mut self, rest: &'a str, binds: u8, depth: usize) -> Step<'a, Expression> {
+    fn signed(&mut self, rest: &'a str, binds: u8, depth: usize) -> ParseResult<'a, Expression> {
         for prefix in [Operation::NOT, Operation::NEGATE] {
             let own = prefix.binds().unwrap_or(0);
             if own >= binds
@@ -239,22 +239,24 @@ impl<'a> Parser<'a> {
         &mut self,
         rest: &'a str,
         expression: Expression,
-    ) -> Result<Expression, Err<Mistake<'a>>> {
+    ) -> Result<Expression, Err<FormulaMistake<'a>>> {
         self.parts += 1;
         match self.parts > LONGEST {
-            true => wrong(rest, Wrong::TooLong),
+            true => wrong(rest, FormulaMistakeKind::TooLong),
             false => Ok(expression),
         }
     }
 
-    fn operand(&mut self, rest: &'a str, depth: usize) -> Step<'a, Expression> {
+    fn operand(&mut self, rest: &'a str, depth: usize) -> ParseResult<'a, Expression> {
         let rest = after_space(rest);
         if let Some(inside) = rest.strip_prefix('(') {
             let (after, inner) = self.level(inside, 1, depth + 1)?;
             return match after_space(after).strip_prefix(')') {
                 Some(after) => Ok((after, inner)),
-                None if after_space(after).is_empty() => wrong(rest, Wrong::OpenBracket),
-                None => wrong(after_space(after), Wrong::Operator),
+                None if after_space(after).is_empty() => {
+                    wrong(rest, FormulaMistakeKind::OpenBracket)
+                }
+                None => wrong(after_space(after), FormulaMistakeKind::Operator),
             };
         }
         if rest.starts_with(|c: char| c.is_ascii_digit() || c == '.') {
@@ -268,7 +270,7 @@ impl<'a> Parser<'a> {
         }
         let name = word(rest);
         if name.is_empty() || is_keyword(name) {
-            return wrong(rest, Wrong::Operand);
+            return wrong(rest, FormulaMistakeKind::Operand);
         }
         let after = rest.get(name.len()..).unwrap_or("");
         if let Some(operands) = after_space(after).strip_prefix('(') {
@@ -303,7 +305,7 @@ impl<'a> Parser<'a> {
         name: &'a str,
         operands: &'a str,
         depth: usize,
-    ) -> Step<'a, Expression> {
+    ) -> ParseResult<'a, Expression> {
         let functions = || {
             let all = Operation::ALL.iter();
             all.filter(|(operation, ..)| operation.binds().is_none())
@@ -314,7 +316,7 @@ impl<'a> Parser<'a> {
             .map(|(operation, ..)| *operation)
             .or(other.map(|(_, operation)| *operation));
         let Some(operation) = operation else {
-            return wrong(start, Wrong::Function(name));
+            return wrong(start, FormulaMistakeKind::Function(name));
         };
         let mut found = Vec::new();
         let mut rest = operands;
@@ -329,31 +331,31 @@ impl<'a> Parser<'a> {
                 let mut all = all.filter(|(known, ..)| *known == operation);
                 let takes = all.next().map_or(0, |(.., count)| *count);
                 if found.len() != takes {
-                    return wrong(start, Wrong::Count(name, takes, found.len()));
+                    return wrong(start, FormulaMistakeKind::Count(name, takes, found.len()));
                 }
                 let called = self.part(start, Expression::Apply(operation, found))?;
                 return Ok((after, called));
             } else if after.is_empty() {
-                return wrong(start, Wrong::OpenBracket);
+                return wrong(start, FormulaMistakeKind::OpenBracket);
             } else {
-                return wrong(after, Wrong::Operator);
+                return wrong(after, FormulaMistakeKind::Operator);
             }
         }
     }
 }
 
-fn number(rest: &str) -> Step<'_, Expression> {
+fn number(rest: &str) -> ParseResult<'_, Expression> {
     let digits = take_while1(|c: char| c.is_ascii_digit() || c == '.');
     let power = (one_of("eE"), opt(one_of("+-")), digit1);
     let (after, written) = recognize((digits, opt(power))).parse(rest)?;
     match written.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok((after, Expression::Number(number))),
-        _ => wrong(rest, Wrong::Number(written)),
+        _ => wrong(rest, FormulaMistakeKind::Number(written)),
     }
 }
 
 /// Parses a name in quotes; a quote or backslash after a backslash is taken literally.
-fn quoted(rest: &str, quote: char) -> Step<'_, String> {
+fn quoted(rest: &str, quote: char) -> ParseResult<'_, String> {
     let mut name = String::new();
     let mut letters = rest.char_indices().skip(1);
     while let Some((at, letter)) = letters.next() {
@@ -368,7 +370,7 @@ fn quoted(rest: &str, quote: char) -> Step<'_, String> {
             _ => name.push(letter),
         }
     }
-    wrong(rest, Wrong::Quote)
+    wrong(rest, FormulaMistakeKind::Quote)
 }
 
 /// Hedges of rules, which a formula does not have.
@@ -385,7 +387,7 @@ fn percent(text: &str, start: usize) -> bool {
     number.is_some_and(|number| number.ends_with(|c: char| c.is_ascii_digit()))
 }
 
-impl Mistake<'_> {
+impl FormulaMistake<'_> {
     /// Returns the diagnostic of the syntax error.
     fn explain(self, text: &str) -> Diagnostic {
         let rest = after_space(self.rest);
@@ -412,7 +414,7 @@ impl Mistake<'_> {
             Diagnostic::error("formula-syntax", start..start + length, message)
         };
         match self.kind {
-            Wrong::Operand => {
+            FormulaMistakeKind::Operand => {
                 let message = format!("expected a number, a name or `(`, found {shown}");
                 let help = match found {
                     "" if text.trim().is_empty() => "write a formula, such as `2 * speed^2 + 1`",
@@ -426,7 +428,7 @@ impl Mistake<'_> {
                 };
                 error(found.len(), message).help(help)
             }
-            Wrong::Operator => {
+            FormulaMistakeKind::Operator => {
                 let message = format!("expected an operator or the end, found {shown}");
                 let before = text.get(..start).unwrap_or("").trim_end();
                 let before = before.rsplit(|c: char| !c.is_alphanumeric()).next();
@@ -465,9 +467,11 @@ impl Mistake<'_> {
                 };
                 error(found.len(), message).help(help)
             }
-            Wrong::Chain => error(found.len(), format!("{shown} follows another comparison"))
-                .help("write `low < x and x < high`"),
-            Wrong::Function(name) => {
+            FormulaMistakeKind::Chain => {
+                error(found.len(), format!("{shown} follows another comparison"))
+                    .help("write `low < x and x < high`")
+            }
+            FormulaMistakeKind::Function(name) => {
                 let mut finding = error(name.len(), format!("there is no function `{name}`"));
                 let functions = Operation::ALL.iter();
                 let functions = functions.filter(|(operation, ..)| operation.binds().is_none());
@@ -481,7 +485,7 @@ impl Mistake<'_> {
                 };
                 finding
             }
-            Wrong::Count(name, takes, has) => {
+            FormulaMistakeKind::Count(name, takes, has) => {
                 let numbers = if takes == 1 { "number" } else { "numbers" };
                 let message = format!("`{name}` takes {takes} {numbers}, not {has}");
                 let help = match takes {
@@ -491,30 +495,30 @@ impl Mistake<'_> {
                 };
                 error(name.len(), message).help(help)
             }
-            Wrong::OpenBracket => {
+            FormulaMistakeKind::OpenBracket => {
                 let length = rest.find('(').map_or(0, |at| at + 1);
                 error(length, "the bracket `(` is never closed".into())
                     .help("add the closing bracket `)`")
             }
-            Wrong::Quote => error(
+            FormulaMistakeKind::Quote => error(
                 found.len(),
                 "the quoted name is empty or never closed".into(),
             )
             .help("write the name of a variable between two quotes"),
-            Wrong::Number(written) => {
+            FormulaMistakeKind::Number(written) => {
                 let message = match written.parse::<f64>() {
                     Ok(_) => format!("the number `{written}` is too large"),
                     Err(_) => format!("`{written}` is not a number"),
                 };
                 error(written.len(), message).help("write digits with one decimal point: `0.5`")
             }
-            Wrong::TooDeep => {
+            FormulaMistakeKind::TooDeep => {
                 let message =
                     format!("brackets, signs and powers are nested deeper than {DEEPEST_NESTING}");
                 error(found.len(), message)
                     .help("split the formula into the formulas of several terms")
             }
-            Wrong::TooLong => {
+            FormulaMistakeKind::TooLong => {
                 let message = format!("the formula has more than {LONGEST} parts");
                 Diagnostic::error("formula-syntax", 0..text.len(), message)
                     .help("split the formula into the formulas of several terms")

@@ -19,20 +19,20 @@ use crate::{
 };
 
 mod consequents;
+mod last_stage;
 mod monotone;
 mod resolve;
 mod settings;
 mod sum;
 #[cfg(test)]
 mod tests;
-mod unchained;
 
 use consequents::{Consequents, highest};
+pub use last_stage::LastStage;
 #[doc(hidden)]
 pub use settings::bad_weight;
 pub use settings::{Direction, LearnError, Refusal, Resolution, Settings, WEIGHTS};
 use sum::Sum;
-pub use unchained::Unchained;
 
 /// A learner, which collects samples and derives rules from them.
 ///
@@ -75,7 +75,7 @@ pub struct Learner {
 
 /// The learned rules, with statistics about the data.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Learned {
+pub struct LearnResult {
     /// The model with its original rules, followed by the learned rules in the order of their
     /// antecedents.
     pub model: Model,
@@ -85,7 +85,7 @@ pub struct Learned {
     pub conflicts: u64,
     /// The number of antecedents without a rule.
     pub missing: u64,
-    /// The first antecedents without a rule, at most [`Learned::SHOWN`].
+    /// The first antecedents without a rule, at most [`LearnResult::SHOWN`].
     pub missing_antecedents: Vec<Condition>,
     /// The number of antecedents that have samples but fall below [`Settings::min_support`] or
     /// [`Settings::min_degree`].
@@ -96,8 +96,8 @@ pub struct Learned {
     pub moved: u64,
 }
 
-impl Learned {
-    /// The maximum length of [`Learned::missing_antecedents`].
+impl LearnResult {
+    /// The maximum length of [`LearnResult::missing_antecedents`].
     pub const SHOWN: usize = 100;
 }
 
@@ -241,7 +241,7 @@ impl Learner {
     }
 
     /// Derives the rules from the samples.
-    pub fn finish(&self) -> Learned {
+    pub fn finish(&self) -> LearnResult {
         resolve::resolve(self)
     }
 }

@@ -2,9 +2,9 @@
 
 use alloc::{boxed::Box, collections::BTreeMap, format, string::String, vec, vec::Vec};
 
-use super::{Cell, Learned, Learner, Resolution, Votes, antecedent, monotone};
+use super::{Cell, LearnResult, Learner, Resolution, Votes, antecedent, monotone};
 use crate::{
-    model::{Beaten, Rule, Variable},
+    model::{RejectedConsequent, Rule, Variable},
     rule::Consequent,
 };
 
@@ -21,9 +21,9 @@ pub(super) struct Decision {
     pub(super) note: Option<String>,
 }
 
-pub(super) fn resolve(learner: &Learner) -> Learned {
+pub(super) fn resolve(learner: &Learner) -> LearnResult {
     let model = &learner.model;
-    let mut learned = Learned {
+    let mut learned = LearnResult {
         model: model.clone(),
         samples: learner.samples,
         conflicts: 0,
@@ -69,7 +69,7 @@ pub(super) fn resolve(learner: &Learner) -> Learned {
         learned.missing_antecedents = every_antecedent(&shape)
             .filter(|terms| !decisions.contains_key(terms.as_slice()))
             .filter_map(|terms| antecedent(learner, &terms))
-            .take(Learned::SHOWN)
+            .take(LearnResult::SHOWN)
             .collect();
     }
     for (terms, decision) in decisions {
@@ -168,7 +168,7 @@ fn rule(
         against: against
             .filter(|(other, _)| **other != term)
             .filter_map(|(other, votes)| {
-                Some(Beaten {
+                Some(RejectedConsequent {
                     term: output.terms.get(usize::from(*other))?.name.clone(),
                     degree: cell.map_or(0.0, |cell| degree(learner, cell, Some(votes))),
                     support: votes.samples,

@@ -19,7 +19,7 @@ rules: []
     crate::yaml::parse(text).unwrap().model
 }
 
-fn learn(settings: Settings, rows: &[[f64; 3]]) -> Learned {
+fn learn(settings: Settings, rows: &[[f64; 3]]) -> LearnResult {
     let mut learner = Learner::new(&variables(), settings).unwrap();
     for row in rows {
         learner.add(row, 1.0).unwrap();
@@ -27,7 +27,7 @@ fn learn(settings: Settings, rows: &[[f64; 3]]) -> Learned {
     learner.finish()
 }
 
-fn words(learned: &Learned) -> Vec<String> {
+fn words(learned: &LearnResult) -> Vec<String> {
     learned
         .model
         .rules
@@ -69,12 +69,16 @@ fn the_papers_printed_rows_make_three_rules() {
         assert_eq!(rule.rule.to_string(), expected.0);
         approx::assert_abs_diff_eq!(rule.confidence.unwrap(), expected.1, epsilon = 5e-6);
     }
-    let beaten = &rules[1].against;
+    let rejected = &rules[1].against;
     assert_eq!(
-        (beaten.len(), beaten[0].term.as_str(), beaten[0].support),
+        (
+            rejected.len(),
+            rejected[0].term.as_str(),
+            rejected[0].support
+        ),
         (1, "medium", 1)
     );
-    approx::assert_abs_diff_eq!(beaten[0].degree, 0.291941, epsilon = 1e-6);
+    approx::assert_abs_diff_eq!(rejected[0].degree, 0.291941, epsilon = 1e-6);
     assert_eq!(
         (learned.samples, learned.conflicts, learned.missing),
         (4, 1, 9)

@@ -31,7 +31,7 @@ use crate::Engine;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grid {
     axes: Vec<Axis>,
-    fixed: Vec<Fixed>,
+    fixed: Vec<FixedInput>,
     cells: usize,
 }
 
@@ -52,7 +52,7 @@ pub struct Axis {
 
 /// A fixed input of a grid.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Fixed {
+pub struct FixedInput {
     /// The name of the input.
     pub name: Arc<str>,
     /// The index of the input.
@@ -176,7 +176,7 @@ impl Grid {
         let index = self.axes.iter().position(|axis| &*axis.name == name);
         let index = index.ok_or_else(|| GridError::NoAxis { name: name.into() })?;
         let axis = self.axes.remove(index);
-        self.fixed.push(Fixed {
+        self.fixed.push(FixedInput {
             name: axis.name,
             input: axis.input,
             value,
@@ -202,7 +202,7 @@ impl Grid {
     }
 
     /// Returns the fixed inputs.
-    pub fn fixed(&self) -> &[Fixed] {
+    pub fn fixed(&self) -> &[FixedInput] {
         &self.fixed
     }
 

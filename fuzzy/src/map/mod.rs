@@ -14,7 +14,7 @@ mod peaks;
 mod tests;
 
 use grid::MOST_CELLS;
-pub use grid::{Axis, Fixed, Grid, GridError};
+pub use grid::{Axis, FixedInput, Grid, GridError};
 pub use peaks::{changing, peaks};
 
 /// One output of an engine in every cell of a grid.

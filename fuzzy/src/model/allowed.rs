@@ -5,7 +5,7 @@ use alloc::string::String;
 /// A finding of the analysis that an author accepts, with the reason. It does not affect evaluation.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct Allowed {
+pub struct AllowedFinding {
     /// The code of the finding, such as `jump`.
     pub finding: String,
     /// The author's reason.

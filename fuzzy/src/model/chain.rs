@@ -20,7 +20,7 @@ use crate::diagnostic::Diagnostic;
 
 /// A reference from one output to another output that it reads.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Read {
+pub(crate) struct OutputReference {
     /// The index of the output that is read.
     pub(crate) output: usize,
     /// The index of the first rule that reads this output; `None` if only a linear function or a
@@ -163,7 +163,7 @@ impl Model {
 }
 
 /// The position at which an output reads a variable.
-enum Place<'m> {
+enum ReferencePosition<'m> {
     /// In the condition of a rule: the index of the rule and the span of the name.
     Condition(usize, &'m Range<usize>),
     /// In the linear function or formula of a term: the index of the term, and the index of the name in it.
@@ -172,7 +172,7 @@ enum Place<'m> {
 
 /// Calls `visit` for every variable that an output reads, with the index of the output, the name of the variable and
 /// the position.
-fn visit_reads<'m>(model: &'m Model, mut visit: impl FnMut(usize, &'m str, Place<'m>)) {
+fn visit_reads<'m>(model: &'m Model, mut visit: impl FnMut(usize, &'m str, ReferencePosition<'m>)) {
     let index = |name: &str| model.outputs.iter().position(|o| o.variable.name == name);
     let together = concluded_together(model);
     for (number, rule) in model.rules.iter().enumerate() {
@@ -185,7 +185,11 @@ fn visit_reads<'m>(model: &'m Model, mut visit: impl FnMut(usize, &'m str, Place
         rule.rule.condition.visit(&mut |proposition| {
             let name = &proposition.variable;
             for &by in &concluded {
-                visit(by, &name.text, Place::Condition(number, &name.span));
+                visit(
+                    by,
+                    &name.text,
+                    ReferencePosition::Condition(number, &name.span),
+                );
             }
         });
     }
@@ -196,16 +200,16 @@ fn visit_reads<'m>(model: &'m Model, mut visit: impl FnMut(usize, &'m str, Place
         }
         for (number, term) in output.variable.terms.iter().enumerate() {
             for (i, name) in term.membership_function.reads().into_iter().enumerate() {
-                visit(by, name, Place::Term(number, i));
+                visit(by, name, ReferencePosition::Term(number, i));
             }
         }
     }
 }
 
 /// Returns, for each output, the other outputs that it reads, each once.
-pub(crate) fn reads_of_all(model: &Model, spans: &Spans) -> Vec<Vec<Read>> {
+pub(crate) fn reads_of_all(model: &Model, spans: &Spans) -> Vec<Vec<OutputReference>> {
     let index = |name: &str| model.outputs.iter().position(|o| o.variable.name == name);
-    let mut reads: Vec<Vec<Read>> = vec![Vec::new(); model.outputs.len()];
+    let mut reads: Vec<Vec<OutputReference>> = vec![Vec::new(); model.outputs.len()];
     visit_reads(model, |by, name, place| {
         let (Some(output), Some(reads)) = (index(name), reads.get_mut(by)) else {
             return;
@@ -214,14 +218,14 @@ pub(crate) fn reads_of_all(model: &Model, spans: &Spans) -> Vec<Vec<Read>> {
             return;
         }
         let (rule, span) = match place {
-            Place::Condition(rule, span) => (Some(rule), span.clone()),
-            Place::Term(term, i) => {
+            ReferencePosition::Condition(rule, span) => (Some(rule), span.clone()),
+            ReferencePosition::Term(term, i) => {
                 let terms = spans.outputs.get(by).map(|spans| &spans.terms);
                 let span = terms.and_then(|terms| terms.get(term)?.parameters.get(i).cloned());
                 (None, span.unwrap_or_default())
             }
         };
-        reads.push(Read { output, rule, span });
+        reads.push(OutputReference { output, rule, span });
     });
     reads
 }
@@ -250,7 +254,7 @@ fn is_selected(model: &Model, rule: &Rule) -> bool {
 
 /// Returns the outputs in an order in which each one follows those it reads. If there are cycles, returns these as the
 /// error: each is a list of outputs of which each one reads the next and the last one reads the first.
-pub(crate) fn order(reads: &[Vec<Read>]) -> Result<Vec<usize>, Vec<Vec<usize>>> {
+pub(crate) fn order(reads: &[Vec<OutputReference>]) -> Result<Vec<usize>, Vec<Vec<usize>>> {
     let (mut order, mut circles) = (Vec::new(), Vec::new());
     let mut placed = vec![false; reads.len()];
     let open = |output: usize, placed: &[bool]| {
@@ -409,8 +413,8 @@ mod tests {
     use super::*;
 
     /// Builds references from indices, in the form that `order` takes.
-    fn reads(of_each: &[&[usize]]) -> Vec<Vec<Read>> {
-        let read = |output: &usize| Read {
+    fn reads(of_each: &[&[usize]]) -> Vec<Vec<OutputReference>> {
+        let read = |output: &usize| OutputReference {
             output: *output,
             rule: None,
             span: 0..0,

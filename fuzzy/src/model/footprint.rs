@@ -2,10 +2,10 @@
 
 use alloc::{format, string::String};
 
-use super::{Formula, Lower, MembershipFunction, Parts};
+use super::{Formula, LowerFunction, MembershipFunction, ShapeParts};
 
 /// An upper membership function, and the lower one with its height.
-pub(crate) type Footprint = (MembershipFunction, Lower);
+pub(crate) type Footprint = (MembershipFunction, LowerFunction);
 
 /// The reason why a membership function has no footprint.
 #[derive(Debug, Clone, PartialEq)]
@@ -159,7 +159,7 @@ fn straight(corners: [f64; 4], by: f64, (low, high): (f64, f64)) -> Result<Footp
     let membership_function = F::Triangle { left, peak, right };
     Ok((
         upper,
-        Lower {
+        LowerFunction {
             membership_function,
             height,
         },
@@ -216,7 +216,7 @@ pub(crate) fn lagging(
     function: &MembershipFunction,
     scale: f64,
     (left_lag, right_lag): (f64, f64),
-) -> Result<Lower, NoFootprint> {
+) -> Result<LowerFunction, NoFootprint> {
     use MembershipFunction as F;
     let toward = |foot: f64, top: f64, lag: f64| foot + lag * (top - foot);
     let membership_function = match *function {
@@ -274,14 +274,14 @@ pub(crate) fn lagging(
         },
         _ => return Err(unsupported(function)),
     };
-    Ok(Lower {
+    Ok(LowerFunction {
         membership_function,
         height: scale,
     })
 }
 
-fn normal(membership_function: MembershipFunction) -> Lower {
-    Lower {
+fn normal(membership_function: MembershipFunction) -> LowerFunction {
+    LowerFunction {
         membership_function,
         height: 1.0,
     }
@@ -289,10 +289,10 @@ fn normal(membership_function: MembershipFunction) -> Lower {
 
 fn unsupported(function: &MembershipFunction) -> NoFootprint {
     let name = match function.parts() {
-        Parts::Fixed(form, _) => form.name,
-        Parts::Points(_) => "piecewise",
-        Parts::Formula(_) => "function",
-        Parts::Linear(..) => "linear",
+        ShapeParts::Fixed(form, _) => form.name,
+        ShapeParts::Points(_) => "piecewise",
+        ShapeParts::Formula(_) => "function",
+        ShapeParts::Linear(..) => "linear",
     };
     NoFootprint::Unsupported(format!("a `{name}`"))
 }

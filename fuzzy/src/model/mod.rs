@@ -17,19 +17,19 @@ mod provenance;
 mod steps;
 pub(crate) mod type2;
 pub use crate::formula::Formula;
-pub(crate) use crate::shape::{Form, Parts};
 pub use crate::shape::{MembershipError, MembershipFunction, Role};
+pub(crate) use crate::shape::{ShapeForm, ShapeParts};
 pub use crate::table::{
     Activation, Aggregation, Comparison, Conjunction, Disjunction, Implication, LEAST_STRENGTH,
 };
-pub use allowed::Allowed;
+pub use allowed::AllowedFinding;
 pub use blocks::Block;
 pub(crate) use blocks::concludes;
 pub use builder::ModelBuilder;
 pub(crate) use partition::{between_peaks, even_peaks};
-pub use provenance::{DataFile, LossChange, Step};
+pub use provenance::{DataFile, LossChange, ProvenanceStep};
 pub(crate) use steps::between_limits;
-pub use type2::{Lower, TypeReduction};
+pub use type2::{LowerFunction, TypeReduction};
 
 /// A rule set: inputs, outputs, operators and rules.
 ///
@@ -67,9 +67,9 @@ pub struct Model {
     /// The rules; if there are blocks, in the order of the blocks.
     pub rules: Vec<Rule>,
     /// The findings of the analysis that the author accepts.
-    pub allow: Vec<Allowed>,
+    pub allow: Vec<AllowedFinding>,
     /// The commands that produced the rule set, in the order in which they ran.
-    pub provenance: Vec<Step>,
+    pub provenance: Vec<ProvenanceStep>,
 }
 
 /// A linguistic variable: a range of numbers and the terms that name parts of it.
@@ -111,7 +111,7 @@ pub struct Term {
     /// The height of the membership function, in (0, 1]; 1 by default.
     pub height: f64,
     /// The lower membership function of an interval type-2 term; `None` for an ordinary term.
-    pub lower: Option<Lower>,
+    pub lower: Option<LowerFunction>,
 }
 
 /// An output variable, with the method that reduces its fuzzy result to a number.
@@ -260,14 +260,14 @@ pub struct Rule {
     /// The number of samples that support the rule.
     pub support: Option<u64>,
     /// The consequents that were rejected in favour of this one when the rule was learned.
-    pub against: Vec<Beaten>,
+    pub against: Vec<RejectedConsequent>,
     /// A note of the author.
     pub note: Option<String>,
 }
 
 /// A consequent that was rejected in favour of the rule's consequent when the rule was learned.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Beaten {
+pub struct RejectedConsequent {
     /// The term of the rejected consequent.
     pub term: String,
     /// The degree of the rejected consequent.

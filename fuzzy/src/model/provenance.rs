@@ -6,7 +6,7 @@ use alloc::{string::String, vec::Vec};
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Step {
+pub struct ProvenanceStep {
     /// The command, or a description of the step.
     pub command: String,
     /// The data files.

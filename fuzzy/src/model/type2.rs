@@ -11,13 +11,13 @@ use crate::rule::{Hedge, Proposition};
 ///
 /// # Example: the degree of 27 lies between 0.5 and 0.7
 /// ```
-/// use fuzzy::model::{Lower, MembershipFunction, Term};
+/// use fuzzy::model::{LowerFunction, MembershipFunction, Term};
 ///
 /// let hot = Term {
 ///     name: "hot".into(),
 ///     membership_function: MembershipFunction::RightShoulder { foot: 20.0, top: 30.0 },
 ///     height: 1.0,
-///     lower: Some(Lower {
+///     lower: Some(LowerFunction {
 ///         membership_function: MembershipFunction::RightShoulder { foot: 22.0, top: 32.0 },
 ///         height: 1.0,
 ///     }),
@@ -26,7 +26,7 @@ use crate::rule::{Hedge, Proposition};
 /// assert_eq!(hot.membership(27.0), 0.7);
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-pub struct Lower {
+pub struct LowerFunction {
     /// The membership function, nowhere above the upper one.
     pub membership_function: MembershipFunction,
     /// The height of the membership function, in (0, 1].
@@ -131,7 +131,7 @@ impl Variable {
             name: name.into(),
             membership_function: upper,
             height: 1.0,
-            lower: Some(Lower {
+            lower: Some(LowerFunction {
                 membership_function: lower,
                 height: 1.0,
             }),

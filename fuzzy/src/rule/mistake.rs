@@ -11,16 +11,16 @@ use super::{
 use crate::diagnostic::{Diagnostic, either, is_curly_quote, meant, nearest, suggest};
 
 /// A syntax error, with the remaining text at the position where it was detected.
-pub(super) struct Mistake<'a> {
+pub(super) struct RuleMistake<'a> {
     pub(super) rest: &'a str,
-    pub(super) kind: Wrong<'a>,
+    pub(super) kind: RuleMistakeKind<'a>,
 }
 
-pub(super) enum Wrong<'a> {
+pub(super) enum RuleMistakeKind<'a> {
     /// One of these keywords was expected; the second field describes what precedes it.
     Keyword(&'static [&'static str], &'static str),
     /// `AND`, `OR` or `THEN` was expected.
-    Joint,
+    Connective,
     /// `IS` is missing after the name of an input or an output. The second field is the text from that name on.
     NoIs(&'static str, &'a str),
     /// A name of this kind was expected.
@@ -45,12 +45,12 @@ pub(super) enum Wrong<'a> {
     TooDeep,
 }
 
-impl<'a> ParseError<&'a str> for Mistake<'a> {
+impl<'a> ParseError<&'a str> for RuleMistake<'a> {
     // nom's own parsers are always optional here, so their errors are always replaced.
     fn from_error_kind(rest: &'a str, _: ErrorKind) -> Self {
-        Mistake {
+        RuleMistake {
             rest,
-            kind: Wrong::Name("a word"),
+            kind: RuleMistakeKind::Name("a word"),
         }
     }
 
@@ -59,9 +59,9 @@ impl<'a> ParseError<&'a str> for Mistake<'a> {
     }
 }
 
-const JOINTS: [&str; 3] = ["AND", "OR", "THEN"];
+const CONNECTIVES: [&str; 3] = ["AND", "OR", "THEN"];
 
-impl Mistake<'_> {
+impl RuleMistake<'_> {
     /// Returns the diagnostic of the syntax error.
     pub(super) fn explain(self, text: &str, owner: Owner<'_>) -> Diagnostic {
         let rest = self.rest.trim_start();
@@ -78,7 +78,7 @@ impl Mistake<'_> {
             syntax(format!("expected {what} after {after}, found {shown}"))
         };
         match self.kind {
-            Wrong::Keyword(words, after) => {
+            RuleMistakeKind::Keyword(words, after) => {
                 let diagnostic = match words {
                     [] => syntax(format!("expected the end of the rule {after}, found {shown}")),
                     _ => syntax(format!("expected {} {after}, found {shown}", either(words))),
@@ -86,13 +86,13 @@ impl Mistake<'_> {
                 let help = match nearest(found, words.iter().copied()) {
                     Some(word) => Some(format!("did you mean `{word}`?")),
                     None if words.contains(&"IF") => Some(at_start(rest)),
-                    None if words.contains(&")") => sign(rest).or_else(|| joint(before, rest)),
+                    None if words.contains(&")") => sign(rest).or_else(|| connective(before, rest)),
                     None => sign(rest).or_else(|| behind_conclusion(before, rest, words.is_empty())),
                 };
                 with_help(diagnostic, help)
             }
-            Wrong::Joint => {
-                let help = match nearest(found, JOINTS) {
+            RuleMistakeKind::Connective => {
+                let help = match nearest(found, CONNECTIVES) {
                     _ if found.eq_ignore_ascii_case("WITH") => {
                         Some("write the weight at the end of the rule: `THEN output IS term WITH 0.5`".into())
                     }
@@ -109,45 +109,45 @@ impl Mistake<'_> {
                         None => "write `THEN` in place of the colon".into(),
                     }),
                     Some(word) => Some(format!("did you mean `{word}`?")),
-                    None => sign(rest).or_else(|| joint(before, rest)),
+                    None => sign(rest).or_else(|| connective(before, rest)),
                 };
-                with_help(expected(&either(&JOINTS), "the condition"), help)
+                with_help(expected(&either(&CONNECTIVES), "the condition"), help)
             }
-            Wrong::NoIs(kind, from) => {
+            RuleMistakeKind::NoIs(kind, from) => {
                 let from = from.trim_start();
                 let name = found_here(from);
                 let start = text.len() - from.len();
                 let help = is_missing(kind, name, rest, text.get(..start).unwrap_or(""), owner);
                 with_help(expected("`IS`", &format!("the {kind}")), help)
             }
-            Wrong::Name(what) => {
+            RuleMistakeKind::Name(what) => {
                 let help = name_is_missing(what, found).or_else(|| sign(rest));
                 with_help(syntax(format!("expected {what}, found {shown}")), help)
             }
-            Wrong::HedgeBeforeInput => {
+            RuleMistakeKind::HedgeBeforeInput => {
                 let diagnostic = syntax(format!("the hedge {shown} is before the input"));
                 diagnostic.help(format!(
                     "write a hedge between `IS` and the term: `input IS {found} term`"
                 ))
             }
-            Wrong::HedgeInConsequent => syntax(format!("`{found}` is not allowed after `THEN`"))
+            RuleMistakeKind::HedgeInConsequent => syntax(format!("`{found}` is not allowed after `THEN`"))
                 .help("`NOT` and `any` belong in the condition; here name one term of the output, such as `IS low` or `IS very low`"),
-            Wrong::TwoWords(second) => two_words(span, found, second),
-            Wrong::OpenQuote => syntax(String::from("the quoted name is never closed"))
+            RuleMistakeKind::TwoWords(second) => two_words(span, found, second),
+            RuleMistakeKind::OpenQuote => syntax(String::from("the quoted name is never closed"))
                 .help("add the closing quote"),
-            Wrong::OpenBracket => Diagnostic::error(
+            RuleMistakeKind::OpenBracket => Diagnostic::error(
                 "rule-syntax",
                 start..start + 1,
                 "the bracket `(` is never closed",
             )
             .help("add the closing bracket `)`"),
-            Wrong::EmptyName => {
+            RuleMistakeKind::EmptyName => {
                 Diagnostic::error("rule-syntax", start..start + 2, "the name is empty")
                     .help("write the name of a variable or a term between the quotes")
             }
-            Wrong::Number => syntax(format!("expected a weight after `WITH`, found {shown}"))
+            RuleMistakeKind::Number => syntax(format!("expected a weight after `WITH`, found {shown}"))
                 .help(weight_advice(rest)),
-            Wrong::Weight(weight) => Diagnostic::error(
+            RuleMistakeKind::Weight(weight) => Diagnostic::error(
                 "weight-outside-range",
                 span,
                 format!("the weight `{weight}` is outside [0, 1]"),
@@ -155,7 +155,7 @@ impl Mistake<'_> {
             .help(
                 "a weight multiplies the firing strength of its rule; write a number from 0 to 1",
             ),
-            Wrong::TooDeep => Diagnostic::error(
+            RuleMistakeKind::TooDeep => Diagnostic::error(
                 "rule-too-deep",
                 span,
                 format!("brackets and NOTs are nested deeper than {DEEPEST_NESTING}"),
@@ -232,7 +232,7 @@ fn is_missing(
 ) -> Option<String> {
     let found = found_here(rest);
     if found.is_empty()
-        || JOINTS
+        || CONNECTIVES
             .iter()
             .chain(&["WITH", ")"])
             .any(|w| w.eq_ignore_ascii_case(found))
@@ -244,7 +244,7 @@ fn is_missing(
             return Some("for a rule that always fires write `input IS any`".into());
         }
         // In `x IS low OR high`, the name is a term of the input before it, or of another one.
-        let joint = before.split_whitespace().next_back().unwrap_or("");
+        let connective = before.split_whitespace().next_back().unwrap_or("");
         let of = owner(kind, name);
         return Some(match last_input(before) {
             _ if kind == "output" && of.is_some() => {
@@ -257,13 +257,13 @@ fn is_missing(
                 Some(other) if other != last => {
                     format!(
                         "name the input: `{} {other} IS {name}`",
-                        joint.to_uppercase()
+                        connective.to_uppercase()
                     )
                 }
                 _ => {
                     format!(
                         "name the input again: `{} {last} IS {name}`",
-                        joint.to_uppercase()
+                        connective.to_uppercase()
                     )
                 }
             },
@@ -291,8 +291,9 @@ fn is_missing(
     }
     // For example `x BETWEEN cold AND mild`.
     if is("BETWEEN")
-        && let [_, low, joint, high, ..] = rest.split_whitespace().collect::<Vec<&str>>().as_slice()
-        && joint.eq_ignore_ascii_case("AND")
+        && let [_, low, connective, high, ..] =
+            rest.split_whitespace().collect::<Vec<&str>>().as_slice()
+        && connective.eq_ignore_ascii_case("AND")
         && [low, high]
             .iter()
             .all(|word| is_plain_name(word) && word.parse::<f64>().is_err())
@@ -452,7 +453,7 @@ fn name_is_missing(what: &str, found: &str) -> Option<String> {
     if what == "the name of an output" && is("THEN") {
         return Some("remove the second `THEN`".into());
     }
-    if JOINTS.iter().any(|joint| is(joint)) {
+    if CONNECTIVES.iter().any(|connective| is(connective)) {
         return Some(format!("add a term before `{found}`"));
     }
     Rule::is_keyword(found).then(|| {
@@ -505,7 +506,7 @@ fn at_start(rest: &str) -> String {
 }
 
 /// Returns a suggestion for a condition that is not followed by AND, OR or THEN.
-fn joint(before: &str, rest: &str) -> Option<String> {
+fn connective(before: &str, rest: &str) -> Option<String> {
     let found = found_here(rest);
     let behind = rest.get(found.len()..).unwrap_or("").trim_start();
     let last = before.split_whitespace().next_back().unwrap_or("");
@@ -548,8 +549,8 @@ fn joint(before: &str, rest: &str) -> Option<String> {
     let has_then = rest
         .split_whitespace()
         .any(|word| word.eq_ignore_ascii_case("THEN"));
-    let joint = if has_then { "AND" } else { "THEN" };
-    Some(format!("write `{joint}` before `{found}`"))
+    let connective = if has_then { "AND" } else { "THEN" };
+    Some(format!("write `{connective}` before `{found}`"))
 }
 
 /// Returns a suggestion for text after a conclusion or after its weight.

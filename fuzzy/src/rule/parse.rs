@@ -28,7 +28,7 @@ use nom::{
 
 use super::{
     Condition, Consequent, Hedge, Name, Proposition, Rule, is_plain_name,
-    mistake::{Mistake, Owner, Wrong},
+    mistake::{Owner, RuleMistake, RuleMistakeKind},
 };
 use crate::diagnostic::{Diagnostic, nearest};
 
@@ -76,14 +76,14 @@ pub(crate) fn parse_with_weight(
     }
 }
 
-type Step<'a, T> = IResult<&'a str, T, Mistake<'a>>;
+type ParseResult<'a, T> = IResult<&'a str, T, RuleMistake<'a>>;
 
-fn wrong<'a, T>(rest: &'a str, kind: Wrong<'a>) -> Step<'a, T> {
-    Err(Err::Failure(Mistake { rest, kind }))
+fn wrong<'a, T>(rest: &'a str, kind: RuleMistakeKind<'a>) -> ParseResult<'a, T> {
+    Err(Err::Failure(RuleMistake { rest, kind }))
 }
 
 /// Skips white space, line breaks and comments.
-fn space(rest: &str) -> Step<'_, ()> {
+fn space(rest: &str) -> ParseResult<'_, ()> {
     let blank = take_while1(char::is_whitespace);
     let comment = preceded(char('#'), take_till(|c| c == '\n'));
     let (rest, _) = many0_count(blank.or(comment)).parse(rest)?;
@@ -95,7 +95,7 @@ pub(super) fn is_name_letter(c: char) -> bool {
 }
 
 /// Returns the word at this position; empty if there is none.
-pub(super) fn word(rest: &str) -> Step<'_, &str> {
+pub(super) fn word(rest: &str) -> ParseResult<'_, &str> {
     let (rest, ()) = space(rest)?;
     take_while(is_name_letter).parse(rest)
 }
@@ -122,13 +122,16 @@ impl<'a> Source<'a> {
         self.text.len() - rest.len()
     }
 
-    fn rule(&self, rest: &'a str) -> Step<'a, (Rule, Range<usize>)> {
+    fn rule(&self, rest: &'a str) -> ParseResult<'a, (Rule, Range<usize>)> {
         let Some(rest) = keyword(rest, "IF") else {
-            return wrong(rest, Wrong::Keyword(&["IF"], "at the start of a rule"));
+            return wrong(
+                rest,
+                RuleMistakeKind::Keyword(&["IF"], "at the start of a rule"),
+            );
         };
         let (rest, condition) = self.any_of(rest, 0)?;
         let Some(mut rest) = keyword(rest, "THEN") else {
-            return wrong(rest, Wrong::Joint);
+            return wrong(rest, RuleMistakeKind::Connective);
         };
         let mut consequents = Vec::new();
         loop {
@@ -152,7 +155,10 @@ impl<'a> Source<'a> {
         };
         let (rest, ()) = space(rest)?;
         if !rest.is_empty() {
-            return wrong(rest, Wrong::Keyword(expected, "after the conclusion"));
+            return wrong(
+                rest,
+                RuleMistakeKind::Keyword(expected, "after the conclusion"),
+            );
         }
         let rule = Rule {
             condition,
@@ -162,20 +168,20 @@ impl<'a> Source<'a> {
         Ok((rest, (rule, span)))
     }
 
-    fn any_of(&self, rest: &'a str, depth: usize) -> Step<'a, Condition> {
+    fn any_of(&self, rest: &'a str, depth: usize) -> ParseResult<'a, Condition> {
         let (rest, parts) = joined(rest, "OR", |rest| self.all_of(rest, depth))?;
         Ok((rest, one_or(parts, Condition::Or)))
     }
 
-    fn all_of(&self, rest: &'a str, depth: usize) -> Step<'a, Condition> {
+    fn all_of(&self, rest: &'a str, depth: usize) -> ParseResult<'a, Condition> {
         let (rest, parts) = joined(rest, "AND", |rest| self.condition(rest, depth))?;
         Ok((rest, one_or(parts, Condition::And)))
     }
 
-    fn condition(&self, rest: &'a str, depth: usize) -> Step<'a, Condition> {
+    fn condition(&self, rest: &'a str, depth: usize) -> ParseResult<'a, Condition> {
         let (rest, ()) = space(rest)?;
         if depth > DEEPEST_NESTING {
-            return wrong(rest, Wrong::TooDeep);
+            return wrong(rest, RuleMistakeKind::TooDeep);
         }
         if let Some(rest) = keyword(rest, "NOT") {
             let (rest, inner) = self.condition(rest, depth + 1)?;
@@ -187,21 +193,21 @@ impl<'a> Source<'a> {
             return match after.strip_prefix(')') {
                 Some(after) => Ok((after, inner)),
                 None if after.is_empty() || keyword(after, "THEN").is_some() => {
-                    wrong(rest, Wrong::OpenBracket)
+                    wrong(rest, RuleMistakeKind::OpenBracket)
                 }
                 None => wrong(
                     after,
-                    Wrong::Keyword(&["AND", "OR", ")"], "after the condition"),
+                    RuleMistakeKind::Keyword(&["AND", "OR", ")"], "after the condition"),
                 ),
             };
         }
         if hedge(rest).is_some() {
-            return wrong(rest, Wrong::HedgeBeforeInput);
+            return wrong(rest, RuleMistakeKind::HedgeBeforeInput);
         }
         let start = rest;
         let (rest, variable) = self.name(rest, "the name of an input, `NOT` or `(`")?;
         let Some(mut rest) = keyword(rest, "IS") else {
-            return wrong(rest, Wrong::NoIs("input", start));
+            return wrong(rest, RuleMistakeKind::NoIs("input", start));
         };
         let mut hedges = Vec::new();
         while let Some((after, hedge)) = hedge(rest) {
@@ -218,7 +224,7 @@ impl<'a> Source<'a> {
             let next = word(after).map_or("", |(_, next)| next);
             let is_bare = !rest.trim_start().starts_with(['"', '\'']);
             if is_bare && is_second_word(after, next) {
-                return wrong(rest, Wrong::TwoWords(next));
+                return wrong(rest, RuleMistakeKind::TwoWords(next));
             }
             (after, Some(term))
         };
@@ -230,16 +236,16 @@ impl<'a> Source<'a> {
         Ok((rest, Condition::Is(proposition)))
     }
 
-    fn consequent(&self, rest: &'a str) -> Step<'a, Consequent> {
+    fn consequent(&self, rest: &'a str) -> ParseResult<'a, Consequent> {
         let start = rest;
         let (rest, output) = self.name(rest, "the name of an output")?;
         let Some(rest) = keyword(rest, "IS") else {
-            return wrong(rest, Wrong::NoIs("output", start));
+            return wrong(rest, RuleMistakeKind::NoIs("output", start));
         };
         let (mut rest, mut hedges) = (rest, Vec::new());
         while let Some((after, hedge)) = hedge(rest) {
             if !hedge.may_conclude() {
-                return wrong(rest, Wrong::HedgeInConsequent);
+                return wrong(rest, RuleMistakeKind::HedgeInConsequent);
             }
             hedges.push(hedge);
             rest = after;
@@ -253,7 +259,7 @@ impl<'a> Source<'a> {
         Ok((rest, consequent))
     }
 
-    fn name(&self, rest: &'a str, what: &'static str) -> Step<'a, Name> {
+    fn name(&self, rest: &'a str, what: &'static str) -> ParseResult<'a, Name> {
         let (rest, ()) = space(rest)?;
         let start = self.at(rest);
         let (after, text) = match rest.chars().next() {
@@ -261,7 +267,7 @@ impl<'a> Source<'a> {
             _ => {
                 let (after, word) = word(rest)?;
                 if !is_plain_name(word) {
-                    return wrong(rest, Wrong::Name(what));
+                    return wrong(rest, RuleMistakeKind::Name(what));
                 }
                 (after, word.into())
             }
@@ -275,8 +281,8 @@ impl<'a> Source<'a> {
 fn joined<'a>(
     mut rest: &'a str,
     word: &str,
-    mut part: impl FnMut(&'a str) -> Step<'a, Condition>,
-) -> Step<'a, Vec<Condition>> {
+    mut part: impl FnMut(&'a str) -> ParseResult<'a, Condition>,
+) -> ParseResult<'a, Vec<Condition>> {
     let mut parts = Vec::new();
     loop {
         let (after, condition) = part(rest)?;
@@ -312,7 +318,7 @@ fn starts_name(rest: &str) -> bool {
 }
 
 /// Parses a name in quotes; a quote or backslash after a backslash is taken literally.
-pub(super) fn quoted(rest: &str, quote: char) -> Step<'_, String> {
+pub(super) fn quoted(rest: &str, quote: char) -> ParseResult<'_, String> {
     let mut name = String::new();
     let mut letters = rest.char_indices().skip(1);
     while let Some((at, c)) = letters.next() {
@@ -322,19 +328,19 @@ pub(super) fn quoted(rest: &str, quote: char) -> Step<'_, String> {
                 Some((_, other)) => name.extend(['\\', other]),
                 None => break,
             },
-            _ if c == quote && name.is_empty() => return wrong(rest, Wrong::EmptyName),
+            _ if c == quote && name.is_empty() => return wrong(rest, RuleMistakeKind::EmptyName),
             _ if c == quote => return Ok((rest.get(at + 1..).unwrap_or(""), name)),
             _ => name.push(c),
         }
     }
-    wrong(rest, Wrong::OpenQuote)
+    wrong(rest, RuleMistakeKind::OpenQuote)
 }
 
 fn is_digit(c: char) -> bool {
     c.is_ascii_digit()
 }
 
-fn weight(rest: &str) -> Step<'_, f64> {
+fn weight(rest: &str) -> ParseResult<'_, f64> {
     let (rest, ()) = space(rest)?;
     let in_number = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '+' | '-' | '%');
     let (after, number) = take_while(in_number).parse(rest)?;
@@ -344,9 +350,9 @@ fn weight(rest: &str) -> Step<'_, f64> {
             if (0.0..=1.0).contains(&weight) {
                 Ok((after, weight))
             } else {
-                wrong(rest, Wrong::Weight(weight))
+                wrong(rest, RuleMistakeKind::Weight(weight))
             }
         }
-        _ => wrong(rest, Wrong::Number),
+        _ => wrong(rest, RuleMistakeKind::Number),
     }
 }

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use super::MembershipFunction;
 
 /// The spelling of a shape in rule sets.
-pub(crate) struct Form {
+pub(crate) struct ShapeForm {
     /// The key of the shape.
     pub(crate) name: &'static str,
     /// The parameters, in the order of a list.
@@ -31,7 +31,7 @@ pub enum Role {
     Number,
 }
 
-impl Form {
+impl ShapeForm {
     /// Returns whether the parameters may be written as a list. This is allowed only if all are positions, because
     /// programs order other parameters differently: `gaussian: [1, 5]` means mean 1 in one program and mean 5 in
     /// another.
@@ -48,9 +48,9 @@ impl Form {
 }
 
 /// The parts of a shape.
-pub(crate) enum Parts<'a> {
+pub(crate) enum ShapeParts<'a> {
     /// A shape with a fixed number of parameters, with their values.
-    Fixed(&'static Form, Vec<f64>),
+    Fixed(&'static ShapeForm, Vec<f64>),
     /// The points of a piecewise shape.
     Points(&'a [(f64, f64)]),
     /// A formula.
@@ -73,35 +73,35 @@ macro_rules! forms {
     ($($shape:ident $name:literal $formula:ident [$($parameter:ident: $role:ident),+] $about:literal;)+) => {
         impl MembershipFunction {
             /// The forms of all shapes with a fixed number of parameters.
-            pub(crate) const FORMS: &[Form] = &[$(form::forms!(@form $shape $name [$($parameter: $role),+] $about)),+];
+            pub(crate) const FORMS: &[ShapeForm] = &[$(form::forms!(@form $shape $name [$($parameter: $role),+] $about)),+];
 
             /// Returns the parts of this shape.
-            pub(crate) fn parts(&self) -> Parts<'_> {
+            pub(crate) fn parts(&self) -> ShapeParts<'_> {
                 match *self {
-                    $(MembershipFunction::$shape { $($parameter),+ } => Parts::Fixed(
+                    $(MembershipFunction::$shape { $($parameter),+ } => ShapeParts::Fixed(
                         const { &form::forms!(@form $shape $name [$($parameter: $role),+] $about) },
                         vec![$($parameter),+],
                     ),)+
-                    MembershipFunction::Piecewise { ref points } => Parts::Points(points),
-                    MembershipFunction::Function { ref formula } => Parts::Formula(formula),
-                    MembershipFunction::Linear { ref coefficients, constant } => Parts::Linear(coefficients, constant),
+                    MembershipFunction::Piecewise { ref points } => ShapeParts::Points(points),
+                    MembershipFunction::Function { ref formula } => ShapeParts::Formula(formula),
+                    MembershipFunction::Linear { ref coefficients, constant } => ShapeParts::Linear(coefficients, constant),
                 }
             }
 
             /// Returns the formula and its parameters. The points of a piecewise shape and the code of a formula are
             /// not included. `Linear` is not a membership function and is 0 everywhere.
-            pub(crate) fn kind(&self) -> (Kind, [f64; 4]) {
+            pub(crate) fn kind(&self) -> (ShapeKind, [f64; 4]) {
                 match *self {
-                    $(MembershipFunction::$shape { $($parameter),+ } => (Kind::$formula, form::padded(&[$($parameter),+])),)+
-                    MembershipFunction::Piecewise { .. } => (Kind::PIECEWISE, [0.0; 4]),
-                    MembershipFunction::Function { .. } => (Kind::FUNCTION, [0.0; 4]),
-                    MembershipFunction::Linear { .. } => (Kind::CONSTANT, [0.0; 4]),
+                    $(MembershipFunction::$shape { $($parameter),+ } => (ShapeKind::$formula, form::padded(&[$($parameter),+])),)+
+                    MembershipFunction::Piecewise { .. } => (ShapeKind::PIECEWISE, [0.0; 4]),
+                    MembershipFunction::Function { .. } => (ShapeKind::FUNCTION, [0.0; 4]),
+                    MembershipFunction::Linear { .. } => (ShapeKind::CONSTANT, [0.0; 4]),
                 }
             }
         }
     };
     (@form $shape:ident $name:literal [$($parameter:ident: $role:ident),+] $about:literal) => {
-        Form {
+        ShapeForm {
             name: $name,
             parameters: &[$((stringify!($parameter), Role::$role)),+],
             about: $about,

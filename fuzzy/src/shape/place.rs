@@ -5,11 +5,11 @@ use alloc::vec::Vec;
 
 use libm::{log, sqrt};
 
-use super::Kind;
 #[cfg(feature = "alloc")]
 use super::MembershipFunction;
+use super::ShapeKind;
 
-impl Kind {
+impl ShapeKind {
     /// Returns the value at which a monotone membership function has a degree in [0, 1], that is, the inverse of its
     /// formula. On a plateau, this is the end of the slope. A sigmoid reaches 0 and 1, and a concave shape reaches 0,
     /// only at infinity. NaN for shapes that are not monotone.
@@ -17,15 +17,15 @@ impl Kind {
         let [a, b, ..] = *parameters;
         let along = |foot: f64, top: f64, part: f64| foot + (top - foot) * part;
         match self {
-            Kind::RIGHT_SHOULDER => along(a, b, degree),
-            Kind::LEFT_SHOULDER => along(b, a, degree),
-            Kind::S_SHAPE => smooth(a, b, degree),
-            Kind::Z_SHAPE => smooth(b, a, degree),
-            Kind::SIGMOID if b != 0.0 => a + log(degree / (1.0 - degree)) / b,
-            Kind::CONCAVE => 2.0 * b - a - (b - a) / degree,
+            ShapeKind::RIGHT_SHOULDER => along(a, b, degree),
+            ShapeKind::LEFT_SHOULDER => along(b, a, degree),
+            ShapeKind::S_SHAPE => smooth(a, b, degree),
+            ShapeKind::Z_SHAPE => smooth(b, a, degree),
+            ShapeKind::SIGMOID if b != 0.0 => a + log(degree / (1.0 - degree)) / b,
+            ShapeKind::CONCAVE => 2.0 * b - a - (b - a) / degree,
             // The inverse of sqrt(t (2 - t)), without cancellation.
-            Kind::ARC => along(a, b, degree * degree / (1.0 + sqrt(1.0 - degree * degree))),
-            Kind::PIECEWISE => piecewise(points, degree),
+            ShapeKind::ARC => along(a, b, degree * degree / (1.0 + sqrt(1.0 - degree * degree))),
+            ShapeKind::PIECEWISE => piecewise(points, degree),
             _ => f64::NAN,
         }
     }
@@ -33,7 +33,7 @@ impl Kind {
 
 #[cfg(feature = "alloc")]
 impl MembershipFunction {
-    /// Returns the value at which a monotone membership function has a degree: see [`Kind::place`].
+    /// Returns the value at which a monotone membership function has a degree: see [`ShapeKind::place`].
     pub(crate) fn place(&self, degree: f64) -> f64 {
         let (kind, parameters) = self.kind();
         match self {

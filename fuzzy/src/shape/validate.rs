@@ -2,7 +2,7 @@
 
 use alloc::{format, string::String};
 
-use super::{MembershipFunction, Parts, Role};
+use super::{MembershipFunction, Role, ShapeParts};
 
 /// The error for parameters that do not define a membership function.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -51,7 +51,7 @@ impl MembershipFunction {
     /// ```
     pub fn validate(&self) -> Result<(), MembershipError> {
         match self.parts() {
-            Parts::Fixed(form, values) => {
+            ShapeParts::Fixed(form, values) => {
                 let mut before: Option<(&str, f64)> = None;
                 for (i, (&(name, role), &value)) in form.parameters.iter().zip(&values).enumerate()
                 {
@@ -73,9 +73,9 @@ impl MembershipFunction {
                     }
                 }
             }
-            Parts::Points(points) => piecewise(points)?,
-            Parts::Formula(_) => {}
-            Parts::Linear(coefficients, constant) => {
+            ShapeParts::Points(points) => piecewise(points)?,
+            ShapeParts::Formula(_) => {}
+            ShapeParts::Linear(coefficients, constant) => {
                 for (i, (input, coefficient)) in coefficients.iter().enumerate() {
                     finite(i, input, *coefficient)?;
                 }

@@ -1,6 +1,6 @@
 //! Activation methods, which select the rules of a block that fire and adjust their strengths.
 
-use super::Partial;
+use super::PartialConjunction;
 
 /// The default of the least firing strength; smaller strengths count as 0. It absorbs the rounding error of strengths
 /// that are exactly 0, such as that of `x IS a AND x IS not a` with `bounded_difference`.
@@ -71,7 +71,7 @@ pub enum Comparison {
 impl Activation {
     /// Replaces the strengths of all rules of a block, in the order of the rules, by the strengths with which they
     /// fire. Rules that do not fire get a strength below `least`.
-    pub(crate) fn activate(self, least: f64, rules: &mut [Partial]) {
+    pub(crate) fn activate(self, least: f64, rules: &mut [PartialConjunction]) {
         match self {
             Activation::General => {}
             Activation::First {
@@ -121,7 +121,12 @@ impl Activation {
 }
 
 /// Selects the first `count` rules that fire with a strength of at least `at_least`.
-fn first<'a>(count: u32, at_least: f64, least: f64, rules: impl Iterator<Item = &'a mut Partial>) {
+fn first<'a>(
+    count: u32,
+    at_least: f64,
+    least: f64,
+    rules: impl Iterator<Item = &'a mut PartialConjunction>,
+) {
     let mut left = count;
     for rule in rules {
         let fires =
@@ -157,8 +162,8 @@ mod tests {
     /// Returns the strengths with which rules of the given strengths fire.
     fn after(activation: Activation, strengths: &[f64]) -> Vec<f64> {
         let rules = strengths.iter().zip(0..);
-        let mut rules: Vec<Partial> = rules
-            .map(|(&degree, at)| Partial::new(degree, at))
+        let mut rules: Vec<PartialConjunction> = rules
+            .map(|(&degree, at)| PartialConjunction::new(degree, at))
             .collect();
         activation.activate(1e-6, &mut rules);
         rules.iter().map(|rule| rule.degree[0]).collect()

@@ -1,9 +1,9 @@
 //! The list of a table's arrays, and access to single arrays.
 
 use super::{
-    Action, Axis, Base, Block, Coefficient, Conjunction, Conjunctions, Consequent, Curve,
-    Dimension, Disjunction, Edge, Flank, FuzzySet, Hedge, Input, Knot, LayeredSet, Layers, Line,
-    Moment, Node, Output, Pair, Point, Program, Section, SetTerm, Sizes, Step, Strand,
+    Action, AntecedentStep, Axis, Base, Block, Coefficient, Conjunction, Conjunctions, Consequent,
+    Curve, Dimension, Disjunction, Edge, Flank, FuzzySet, Hedge, Input, Knot, LayeredSet, Layers,
+    Line, Moment, Node, Output, Pair, Point, Program, Section, SetTerm, Sizes, Strand,
 };
 
 /// Invokes `$then!` with the given tokens and the arrays of a table, each as `name: Item,` with its documentation.
@@ -47,7 +47,7 @@ macro_rules! table_arrays {
             /// The rules that are not plain ANDs.
             programs: Program,
             /// The steps of programs.
-            steps: Step,
+            steps: AntecedentStep,
             /// The rule blocks, if they have different operators or activation methods. In that case all rules are
             /// programs.
             blocks: Block,

@@ -1,8 +1,10 @@
 //! Rule blocks with their own operators and activation method. Each rule of a block is a program.
 
-use super::acting::Act;
+use super::actions::FiringConsumer;
 use super::firing::run;
-use super::{Activation, Arrays, Comparison, Conjunction, Disjunction, Partial, Program};
+use super::{
+    Activation, Arrays, Comparison, Conjunction, Disjunction, PartialConjunction, Program,
+};
 
 /// A rule block.
 #[doc(hidden)] // Exported data.
@@ -114,7 +116,12 @@ impl Block {
 
 /// Applies the hedges of its consequents to the strength of a rule, and passes the rule to `firing`.
 #[inline(always)]
-fn act<A: Arrays>(table: &A, program: &Program, strength: f64, firing: &mut impl Act<1>) {
+fn act<A: Arrays>(
+    table: &A,
+    program: &Program,
+    strength: f64,
+    firing: &mut impl FiringConsumer<1>,
+) {
     let hedges = &table.hedges()[program.first_hedge as usize..program.end_hedge as usize];
     let strength = hedges.iter().fold(strength, |x, hedge| hedge.of(x));
     let actions = program.first_action as usize..program.end_action as usize;
@@ -128,9 +135,9 @@ fn act<A: Arrays>(table: &A, program: &Program, strength: f64, firing: &mut impl
 pub(super) fn fire_blocks<A: Arrays>(
     table: &A,
     degrees: &[[f64; 1]],
-    rules: &mut [Partial],
+    rules: &mut [PartialConjunction],
     stack: &mut [[f64; 1]],
-    firing: &mut impl Act<1>,
+    firing: &mut impl FiringConsumer<1>,
 ) {
     for block in table.blocks() {
         let (and, or) = block.operators();
@@ -144,14 +151,14 @@ pub(super) fn fire_blocks<A: Arrays>(
                 let (and, or) = (|a, b| and.of(a, b), |a, b| or.of(a, b));
                 let mut degree = [0.0];
                 run(steps, degrees, (and, or), stack, &mut degree);
-                rules[count] = Partial::new(program.weight * degree[0], at);
+                rules[count] = PartialConjunction::new(program.weight * degree[0], at);
                 count += 1;
             }
         }
         let rules = &mut rules[..count];
         let least = table.least_strength();
         block.activation().activate(least, rules);
-        let rules = rules.iter().map(Partial::parts);
+        let rules = rules.iter().map(PartialConjunction::parts);
         for (strength, at) in rules.filter(|(strength, _)| *strength >= least) {
             let programs = &table.programs()[at as usize..block.end_program as usize];
             let more = |program: &&Program| program.first_step == program.end_step;

@@ -1,7 +1,7 @@
 //! A rule set in which outputs read other outputs, as plain arrays: the arrays of its stages are concatenated.
 
 use super::{
-    Conjunctions, Curve, Damaged, Hedge, Outcome, Point, Scratch, Sizes, State, Table,
+    Conjunctions, Curve, DamagedArray, Hedge, Outcome, Point, Scratch, Sizes, State, Table,
     concluded_by, raised_by,
 };
 
@@ -93,7 +93,7 @@ impl Conjunctions {
 
 /// The relation of a stage to the whole rule set.
 #[derive(Debug, Clone, Copy)]
-pub struct Place<'a> {
+pub struct StageIndices<'a> {
     /// The outputs that the stage reads. Their values follow those of the inputs.
     pub reads: &'a [u32],
     /// The index in the model of each output of the stage.
@@ -125,7 +125,7 @@ pub struct Values<'m> {
 
 /// The criterion by which a rule is selected.
 #[derive(Debug, Clone, Copy)]
-pub enum Sought {
+pub enum StageRuleCriterion {
     /// The rule that raises an output of this value most: see [`Table::raised_by`].
     Raises(f64),
     /// The rule that contributes most to a proposition about the output. The number is the index among the propositions
@@ -135,7 +135,7 @@ pub enum Sought {
 
 impl<'a> Chain<'a> {
     /// Iterates over the tables of the stages, with the relation of each to the rule set. It ends at the first damaged stage.
-    pub fn parts(self) -> impl Iterator<Item = (Table<'a>, Place<'a>)> {
+    pub fn parts(self) -> impl Iterator<Item = (Table<'a>, StageIndices<'a>)> {
         let mut first = Ends::default();
         let mut places = self.places;
         self.stages.iter().map_while(move |stage| {
@@ -144,14 +144,14 @@ impl<'a> Chain<'a> {
                 places = rest;
                 Some(taken)
             };
-            let place = Place {
+            let indices = StageIndices {
                 reads: take(stage.reads)?,
                 outputs: take(stage.outputs)?,
                 rules: take(stage.rules)?,
             };
             let table = self.table.part(stage, first)?;
             first = stage.ends;
-            Some((table, place))
+            Some((table, indices))
         })
     }
 
@@ -171,12 +171,12 @@ impl<'a> Chain<'a> {
     ///
     /// # Errors
     /// The first array with an index out of bounds.
-    pub fn check(&self, inputs: usize) -> Result<(), Damaged> {
-        let require = |holds: bool, array| holds.then_some(()).ok_or(Damaged(array));
+    pub fn check(&self, inputs: usize) -> Result<(), DamagedArray> {
+        let require = |holds: bool, array| holds.then_some(()).ok_or(DamagedArray(array));
         let outputs = self.table.outputs.len();
         let is_output = |output: &u32| (*output as usize) < outputs;
         require(self.parts().count() == self.stages.len(), "stages")?;
-        for (table, place) in self.parts() {
+        for (table, indices) in self.parts() {
             table.check()?;
             let sizes = [table.sizes, self.table.sizes].map(|sizes| {
                 let Sizes {
@@ -190,11 +190,11 @@ impl<'a> Chain<'a> {
             });
             let fits = sizes[0].iter().zip(&sizes[1]).all(|(own, all)| own <= all);
             require(
-                fits && table.inputs.len() == inputs.saturating_add(place.reads.len())
-                    && table.outputs.len() == place.outputs.len(),
+                fits && table.inputs.len() == inputs.saturating_add(indices.reads.len())
+                    && table.outputs.len() == indices.outputs.len(),
                 "stages",
             )?;
-            let mut of_model = place.reads.iter().chain(place.outputs);
+            let mut of_model = indices.reads.iter().chain(indices.outputs);
             require(of_model.all(is_output), "places")?;
         }
         let first = self.first_conclusion();
@@ -229,7 +229,7 @@ impl<'a> Chain<'a> {
         outcomes: &mut [Outcome],
     ) {
         let Values { inputs: read, own } = values;
-        for (table, place) in self.parts() {
+        for (table, indices) in self.parts() {
             let Some(mut scratch) = fitted(scratch, &table) else {
                 return;
             };
@@ -237,7 +237,7 @@ impl<'a> Chain<'a> {
             let evaluate = |inputs: &[f64], own: &mut [Outcome]| {
                 table.evaluate(&mut scratch, inputs, own);
             };
-            stage(place, given, outcomes, evaluate, &mut |_, _| {});
+            stage(indices, given, outcomes, evaluate, &mut |_, _| {});
         }
     }
 
@@ -248,28 +248,31 @@ impl<'a> Chain<'a> {
         scratch: &mut Scratch<'_>,
         values: &mut Values<'_>,
         (inputs, outcomes): (&[f64], &[Outcome]),
-        (output, sought): (usize, Sought),
+        (output, criterion): (usize, StageRuleCriterion),
         found: impl FnOnce(usize, &[f64]) -> Option<R>,
     ) -> Option<R> {
         let mut rules = 0;
-        for (table, place) in self.parts() {
-            let own = place.outputs.iter().position(|own| *own as usize == output);
+        for (table, indices) in self.parts() {
+            let own = indices
+                .outputs
+                .iter()
+                .position(|own| *own as usize == output);
             let Some(own) = own else {
-                rules += place.rules.len();
+                rules += indices.rules.len();
                 continue;
             };
             let all = values.inputs.get_mut(..table.inputs.len())?;
             let (given, reads) = all.split_at_mut_checked(inputs.len())?;
             given.copy_from_slice(inputs);
-            for (value, read) in reads.iter_mut().zip(place.reads) {
+            for (value, read) in reads.iter_mut().zip(indices.reads) {
                 *value = outcomes.get(*read as usize)?.value()?;
             }
             let mut scratch = fitted(scratch, &table)?;
-            let rule = match sought {
-                Sought::Raises(value) => {
+            let rule = match criterion {
+                StageRuleCriterion::Raises(value) => {
                     raised_by(&table, &mut scratch.rows(), all, (own, value), |_, _| None)
                 }
-                Sought::Concludes(number) => {
+                StageRuleCriterion::Concludes(number) => {
                     let curve = self.table.curves.get(self.first_conclusion() + number)?;
                     let degree = |x: f64| self.degree(curve, x);
                     concluded_by(&table, &mut scratch.rows(), all, (own, degree), |_, _| None)
@@ -281,20 +284,20 @@ impl<'a> Chain<'a> {
     }
 
     /// Converts the index of a rule in evaluation order to its index in the model.
-    pub fn rule(&self, place: usize) -> Option<usize> {
-        let rules = self.parts().flat_map(|(_, place)| place.rules);
-        rules.map(|rule| *rule as usize).nth(place)
+    pub fn rule(&self, indices: usize) -> Option<usize> {
+        let rules = self.parts().flat_map(|(_, indices)| indices.rules);
+        rules.map(|rule| *rule as usize).nth(indices)
     }
 
     /// Returns the outputs without a closed form that other outputs read, and `risk` if it has no closed form.
     pub fn open(self, risk: usize) -> impl Iterator<Item = usize> + use<'a> {
         let is_read = move |output: u32| {
-            let mut reads = self.parts().flat_map(|(_, place)| place.reads);
+            let mut reads = self.parts().flat_map(|(_, indices)| indices.reads);
             output as usize == risk || reads.any(|read| *read == output)
         };
         let all = self
             .parts()
-            .flat_map(|(table, place)| table.outputs.iter().zip(place.outputs));
+            .flat_map(|(table, indices)| table.outputs.iter().zip(indices.outputs));
         let open = all.filter(|(of, _)| of.form() == super::ClosedForm::Integrated);
         open.map(|(_, output)| *output)
             .filter(move |output| is_read(*output))
@@ -340,7 +343,7 @@ fn fitted<'s>(scratch: &'s mut Scratch<'_>, table: &Table<'_>) -> Option<Scratch
 /// Evaluates a stage: copies the values that it reads from the outcomes of all outputs, and writes its own outcomes
 /// there. `keep` may change these before other outputs read them.
 pub(crate) fn stage(
-    place: Place<'_>,
+    indices: StageIndices<'_>,
     (inputs, values, own): (&[f64], &mut [f64], &mut [Outcome]),
     outcomes: &mut [Outcome],
     evaluate: impl FnOnce(&[f64], &mut [Outcome]),
@@ -350,7 +353,7 @@ pub(crate) fn stage(
     for (value, given) in values.iter_mut().zip(inputs) {
         *value = *given;
     }
-    let reads = values.iter_mut().skip(inputs.len()).zip(place.reads);
+    let reads = values.iter_mut().skip(inputs.len()).zip(indices.reads);
     for (value, read) in reads {
         let Some(outcome) = outcomes.get(*read as usize) else {
             return;
@@ -361,8 +364,8 @@ pub(crate) fn stage(
             None => unknown = Some(outcome.state),
         }
     }
-    let all = values.get(..inputs.len() + place.reads.len());
-    let (Some(all), Some(own)) = (all, own.get_mut(..place.outputs.len())) else {
+    let all = values.get(..inputs.len() + indices.reads.len());
+    let (Some(all), Some(own)) = (all, own.get_mut(..indices.outputs.len())) else {
         return;
     };
     match unknown {
@@ -374,8 +377,8 @@ pub(crate) fn stage(
         }),
         Some(_) => own.fill(Outcome::UNDEFINED),
     }
-    for (output, own) in place.outputs.iter().zip(own) {
-        let rule_of_model = |rule: usize| place.rules.get(rule).map(|rule| *rule as usize);
+    for (output, own) in indices.outputs.iter().zip(own) {
+        let rule_of_model = |rule: usize| indices.rules.get(rule).map(|rule| *rule as usize);
         if let Some(outcome) = outcomes.get_mut(*output as usize) {
             *outcome = Outcome {
                 dominant_rule: own.dominant_rule.and_then(rule_of_model),

@@ -4,9 +4,9 @@ use super::{ClosedForm, Conjunctions, Dimension, FuzzySet, Input, LayeredSet, Op
 
 /// The error for a damaged table or plan: the name of the array with an index out of bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Damaged(pub &'static str);
+pub struct DamagedArray(pub &'static str);
 
-impl core::fmt::Display for Damaged {
+impl core::fmt::Display for DamagedArray {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         write!(
             f,
@@ -16,11 +16,11 @@ impl core::fmt::Display for Damaged {
     }
 }
 
-impl core::error::Error for Damaged {}
+impl core::error::Error for DamagedArray {}
 
 /// Returns an error that names the array unless the condition is true.
-fn require(holds: bool, array: &'static str) -> Result<(), Damaged> {
-    holds.then_some(()).ok_or(Damaged(array))
+fn require(holds: bool, array: &'static str) -> Result<(), DamagedArray> {
+    holds.then_some(()).ok_or(DamagedArray(array))
 }
 
 /// Returns whether a range of indices is inside an array of the given length.
@@ -34,7 +34,7 @@ impl Table<'_> {
     ///
     /// # Errors
     /// The first array with an index out of bounds.
-    pub fn check(&self) -> Result<(), Damaged> {
+    pub fn check(&self) -> Result<(), DamagedArray> {
         let literals = self.sizes.degrees as usize;
         let inputs = self.inputs.len();
 
@@ -151,7 +151,7 @@ impl Table<'_> {
     }
 
     /// Verifies the layers of an output with a number of firing strengths.
-    fn check_layers(&self, set: &LayeredSet, strengths: usize) -> Result<(), Damaged> {
+    fn check_layers(&self, set: &LayeredSet, strengths: usize) -> Result<(), DamagedArray> {
         require(
             within(set.first_base, set.end_base, self.bases.len())
                 && within(set.first_layer, set.end_layer, self.layers.len()),
@@ -171,7 +171,7 @@ impl Table<'_> {
     }
 
     /// Verifies the set of an output with a number of firing strengths.
-    fn check_set(&self, set: &FuzzySet, strengths: usize) -> Result<(), Damaged> {
+    fn check_set(&self, set: &FuzzySet, strengths: usize) -> Result<(), DamagedArray> {
         let terms = set.end_term.saturating_sub(set.first_term) as usize;
         require(
             within(set.first_section, set.end_section, self.sections.len())
@@ -194,19 +194,19 @@ impl Table<'_> {
         Ok(())
     }
 
-    fn check_uniform(&self, actions_a_cell: u64, first_action: u64) -> Result<(), Damaged> {
+    fn check_uniform(&self, actions_a_cell: u64, first_action: u64) -> Result<(), DamagedArray> {
         let mut last_cell = 0;
         for axis in self.axes {
             let cuts = self
                 .cuts
                 .get(axis.first_cut as usize..axis.end_cut as usize);
-            let cuts = cuts.ok_or(Damaged("axes"))?;
+            let cuts = cuts.ok_or(DamagedArray("axes"))?;
             // Infinity is padding and does not start an interval.
             let intervals = 1 + cuts.iter().filter(|cut| **cut < f64::INFINITY).count();
             let lines = self.lines.get(axis.first_line as usize..);
             let lines = lines.and_then(|lines| lines.get(..2 * intervals));
             let offset = lines.and_then(|lines| lines.iter().map(|line| line.literal).max());
-            last_cell += u64::from(offset.ok_or(Damaged("axes"))?);
+            last_cell += u64::from(offset.ok_or(DamagedArray("axes"))?);
             require((axis.input as usize) < self.inputs.len(), "axes")?;
         }
         require(last_cell <= u64::from(u32::MAX), "axes")?;
@@ -220,13 +220,13 @@ impl Table<'_> {
         require(self.axes.len() == 2 || fits, "axes")
     }
 
-    fn check_dense(&self) -> Result<(), Damaged> {
+    fn check_dense(&self) -> Result<(), DamagedArray> {
         let partial = self.sizes.partial as usize;
         let (mut last_cell, mut most) = (0, 1usize);
         for (i, dimension) in self.dimensions.iter().enumerate() {
             let input = self.inputs.get(dimension.input as usize);
             let alive = input.and_then(|input| self.alive_at_most(input));
-            let (mut last, mut alive) = alive.ok_or(Damaged("dimensions"))?;
+            let (mut last, mut alive) = alive.ok_or(DamagedArray("dimensions"))?;
             if dimension.any != Dimension::NONE {
                 last = last.max(dimension.any);
                 alive += 1;
@@ -251,7 +251,7 @@ impl Table<'_> {
         )
     }
 
-    fn check_trie(&self, literals: usize) -> Result<(), Damaged> {
+    fn check_trie(&self, literals: usize) -> Result<(), DamagedArray> {
         let mut edges = 0;
         for (i, node) in self.nodes.iter().enumerate() {
             edges += node.end_edge.saturating_sub(node.first_edge) as usize;

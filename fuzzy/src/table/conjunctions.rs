@@ -5,22 +5,22 @@
 //! each.
 
 use super::Arrays;
-use super::acting::Act;
+use super::actions::FiringConsumer;
 use super::input::{along, curves, lines};
 use super::rules::{Action, Axis, Dimension};
 
 /// The degree of the first literals of a plain AND, with the offset of the cell or the index of the node that they lead
 /// to, in each of `L` rows.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Partial<const L: usize = 1> {
+pub struct PartialConjunction<const L: usize = 1> {
     pub(super) degree: [f64; L],
     pub(super) at: [u32; L],
 }
 
-impl Partial {
+impl PartialConjunction {
     /// Creates the strength and the index of a rule, as [`Activation`](super::Activation) expects them.
     pub(crate) fn new(degree: f64, at: u32) -> Self {
-        Partial {
+        PartialConjunction {
             degree: [degree],
             at: [at],
         }
@@ -33,15 +33,15 @@ impl Partial {
     }
 }
 
-impl<const L: usize> Partial<L> {
+impl<const L: usize> PartialConjunction<L> {
     /// The initial content of memory, with degree 0.
-    pub const NONE: Self = Partial {
+    pub const NONE: Self = PartialConjunction {
         degree: [0.0; L],
         at: [0; L],
     };
 
     /// The empty conjunction, with degree 1.
-    const START: Self = Partial {
+    const START: Self = PartialConjunction {
         degree: [1.0; L],
         at: [0; L],
     };
@@ -49,7 +49,7 @@ impl<const L: usize> Partial<L> {
     /// Returns the conjunction of both, by `and`.
     #[inline(always)]
     fn and(&self, other: &Self, and: impl Fn(f64, f64) -> f64) -> Self {
-        let mut both = Partial::NONE;
+        let mut both = PartialConjunction::NONE;
         for row in 0..L {
             both.degree[row] = and(self.degree[row], other.degree[row]);
             both.at[row] = self.at[row] + other.at[row];
@@ -84,9 +84,9 @@ pub(super) fn fire_uniform<A: Arrays, const L: usize>(
     table: &A,
     cells: &Cells<'_>,
     values: &[[f64; L]],
-    partial: &mut [Partial<L>],
+    partial: &mut [PartialConjunction<L>],
     and: impl Fn(f64, f64) -> f64,
-    firing: &mut impl Act<L>,
+    firing: &mut impl FiringConsumer<L>,
 ) {
     if let [first, second] = table.axes() {
         let [a, b] = &at(table, first, values);
@@ -103,7 +103,7 @@ pub(super) fn fire_uniform<A: Arrays, const L: usize>(
         firing.act_in_cells(cells, &mut reached);
         return;
     }
-    partial[0] = Partial::START;
+    partial[0] = PartialConjunction::START;
     let mut count = 1;
     for axis in table.axes() {
         let [a, b] = &at(table, axis, values);
@@ -119,7 +119,11 @@ pub(super) fn fire_uniform<A: Arrays, const L: usize>(
 
 /// Returns the degrees and offsets of the two lines on the interval that contains the value of the axis' input.
 #[inline(always)]
-fn at<A: Arrays, const L: usize>(table: &A, axis: &Axis, values: &[[f64; L]]) -> [Partial<L>; 2] {
+fn at<A: Arrays, const L: usize>(
+    table: &A,
+    axis: &Axis,
+    values: &[[f64; L]],
+) -> [PartialConjunction<L>; 2] {
     let values = &values[axis.input as usize];
     let cuts = &table.cuts()[axis.first_cut as usize..axis.end_cut as usize];
     let mut intervals = [0u64; L];
@@ -132,7 +136,7 @@ fn at<A: Arrays, const L: usize>(table: &A, axis: &Axis, values: &[[f64; L]]) ->
     }
     // The parameters are gathered first, so that the arithmetic runs on whole rows.
     let mut gathered = [[[0.0; L]; 4]; 2];
-    let mut reached = [Partial::NONE; 2];
+    let mut reached = [PartialConjunction::NONE; 2];
     for row in 0..L {
         let first = axis.first_line as usize + 2 * intervals[row] as usize;
         let lines = &table.lines()[first..first + 2];
@@ -159,9 +163,13 @@ fn at<A: Arrays, const L: usize>(table: &A, axis: &Axis, values: &[[f64; L]]) ->
 pub(super) fn fire_dense<A: Arrays, const L: usize>(
     table: &A,
     values: &[[f64; L]],
-    (alive, mut partial, mut next): (&mut [Partial<L>], &mut [Partial<L>], &mut [Partial<L>]),
+    (alive, mut partial, mut next): (
+        &mut [PartialConjunction<L>],
+        &mut [PartialConjunction<L>],
+        &mut [PartialConjunction<L>],
+    ),
     and: impl Fn(f64, f64) -> f64,
-    firing: &mut impl Act<L>,
+    firing: &mut impl FiringConsumer<L>,
 ) {
     let actions = |cell: u32| {
         let cell = cell as usize;
@@ -174,7 +182,7 @@ pub(super) fn fire_dense<A: Arrays, const L: usize>(
         }
         return;
     };
-    partial[0] = Partial::START;
+    partial[0] = PartialConjunction::START;
     let mut counts = [1; L];
     for dimension in others {
         let alive_here = alive_terms(table, dimension, values, alive);
@@ -209,7 +217,7 @@ fn alive_terms<A: Arrays, const L: usize>(
     table: &A,
     dimension: &Dimension,
     values: &[[f64; L]],
-    alive: &mut [Partial<L>],
+    alive: &mut [PartialConjunction<L>],
 ) -> [usize; L] {
     let input = &table.inputs()[dimension.input as usize];
     let values = &values[dimension.input as usize];
@@ -244,11 +252,11 @@ pub(super) fn fire_trie<A: Arrays, const L: usize>(
     table: &A,
     row: usize,
     degrees: &[[f64; L]],
-    path: &mut [Partial<L>],
+    path: &mut [PartialConjunction<L>],
     and: impl Fn(f64, f64) -> f64,
-    firing: &mut impl Act<L>,
+    firing: &mut impl FiringConsumer<L>,
 ) {
-    path[0] = Partial::START;
+    path[0] = PartialConjunction::START;
     let mut open = 1usize;
     // In a tree no node is reached twice. In a damaged table that is not a tree, this limit bounds the time.
     for _ in table.nodes() {

@@ -2,12 +2,12 @@
 
 use core::ops::DerefMut;
 
-use super::acting::{Act, Firing, Strongest, fires};
+use super::actions::{FiringConsumer, FiringStrengths, StrongestRule, fires};
 use super::blocks::fire_blocks;
-use super::conjunctions::{Cells, Partial, fire_dense, fire_trie, fire_uniform};
+use super::conjunctions::{Cells, PartialConjunction, fire_dense, fire_trie, fire_uniform};
 use super::input::degrees_in_rows;
 use super::operators::{larger, smaller};
-use super::rules::{Op, Step};
+use super::rules::{AntecedentStep, Op};
 use super::{Arrays, Buffers, Conjunction, Conjunctions, Disjunction};
 use crate::rows::{change, join};
 
@@ -27,11 +27,11 @@ pub(crate) fn fire<A, N, P, S, const L: usize, const CELLS: bool>(
 ) where
     A: Arrays,
     N: DerefMut<Target = [[f64; L]]>,
-    P: DerefMut<Target = [Partial<L>]>,
-    S: DerefMut<Target = [Strongest<L>]>,
+    P: DerefMut<Target = [PartialConjunction<L>]>,
+    S: DerefMut<Target = [StrongestRule<L>]>,
 {
-    let (finding, mut firing) = ready(table, scratch);
-    fire_into::<A, L, CELLS>(table, finding, &mut firing);
+    let (search, mut firing) = ready(table, scratch);
+    fire_into::<A, L, CELLS>(table, search, &mut firing);
     if !CELLS {
         firing.end();
     }
@@ -43,11 +43,11 @@ pub(crate) fn fire_row<A, N, P, S>(table: &A, scratch: &mut Buffers<N, P, S>)
 where
     A: Arrays,
     N: DerefMut<Target = [[f64; 1]]>,
-    P: DerefMut<Target = [Partial]>,
-    S: DerefMut<Target = [Strongest]>,
+    P: DerefMut<Target = [PartialConjunction]>,
+    S: DerefMut<Target = [StrongestRule]>,
 {
-    let (finding, mut firing) = ready(table, scratch);
-    fire_row_into(table, finding, &mut firing);
+    let (search, mut firing) = ready(table, scratch);
+    fire_row_into(table, search, &mut firing);
     firing.end();
 }
 
@@ -56,22 +56,22 @@ where
 fn ready<'m, A, N, P, S, const L: usize>(
     table: &A,
     scratch: &'m mut Buffers<N, P, S>,
-) -> (Finding<'m, L>, Firing<'m, L>)
+) -> (RuleSearch<'m, L>, FiringStrengths<'m, L>)
 where
     A: Arrays,
     N: DerefMut<Target = [[f64; L]]>,
-    P: DerefMut<Target = [Partial<L>]>,
-    S: DerefMut<Target = [Strongest<L>]>,
+    P: DerefMut<Target = [PartialConjunction<L>]>,
+    S: DerefMut<Target = [StrongestRule<L>]>,
 {
     // Models with one output are the most common; this avoids a call of `fill` for them.
     match &mut *scratch.strongest {
-        [one] => *one = Strongest::NONE,
-        all => all.fill(Strongest::NONE),
+        [one] => *one = StrongestRule::NONE,
+        all => all.fill(StrongestRule::NONE),
     }
-    let (finding, strengths, strongest) = scratch.split();
+    let (search, strengths, strongest) = scratch.split();
     clear(strengths);
-    let firing = Firing::new(table.least_strength(), strengths, strongest);
-    (finding, firing)
+    let firing = FiringStrengths::new(table.least_strength(), strengths, strongest);
+    (search, firing)
 }
 
 /// Sets all strengths to 0. Few elements are written inline, because a call of `memset` takes longer.
@@ -89,16 +89,16 @@ fn clear<const L: usize>(strengths: &mut [[f64; L]]) {
 }
 
 /// The memory used to find the rules that fire.
-pub(super) struct Finding<'m, const L: usize> {
+pub(super) struct RuleSearch<'m, const L: usize> {
     values: &'m [[f64; L]],
     degrees: &'m mut [[f64; L]],
-    alive: &'m mut [Partial<L>],
-    partial: &'m mut [Partial<L>],
-    next: &'m mut [Partial<L>],
+    alive: &'m mut [PartialConjunction<L>],
+    partial: &'m mut [PartialConjunction<L>],
+    next: &'m mut [PartialConjunction<L>],
     stack: &'m mut [[f64; L]],
 }
 
-impl<'m, const L: usize> Finding<'m, L> {
+impl<'m, const L: usize> RuleSearch<'m, L> {
     pub(super) fn values(&self) -> &'m [[f64; L]] {
         self.values
     }
@@ -125,13 +125,13 @@ impl<N, P, S> Buffers<N, P, S> {
     #[inline(always)]
     pub(super) fn split<const L: usize>(
         &mut self,
-    ) -> (Finding<'_, L>, &mut [[f64; L]], &mut [Strongest<L>])
+    ) -> (RuleSearch<'_, L>, &mut [[f64; L]], &mut [StrongestRule<L>])
     where
         N: DerefMut<Target = [[f64; L]]>,
-        P: DerefMut<Target = [Partial<L>]>,
-        S: DerefMut<Target = [Strongest<L>]>,
+        P: DerefMut<Target = [PartialConjunction<L>]>,
+        S: DerefMut<Target = [StrongestRule<L>]>,
     {
-        let finding = Finding {
+        let search = RuleSearch {
             values: &self.values,
             degrees: &mut self.degrees,
             alive: &mut self.alive,
@@ -139,7 +139,7 @@ impl<N, P, S> Buffers<N, P, S> {
             next: &mut self.next,
             stack: &mut self.stack,
         };
-        (finding, &mut self.strengths, &mut self.strongest)
+        (search, &mut self.strengths, &mut self.strongest)
     }
 }
 
@@ -147,39 +147,43 @@ impl<N, P, S> Buffers<N, P, S> {
 #[inline(always)]
 pub(super) fn fire_row_into<A: Arrays>(
     table: &A,
-    finding: Finding<'_, 1>,
-    firing: &mut impl Act<1>,
+    search: RuleSearch<'_, 1>,
+    firing: &mut impl FiringConsumer<1>,
 ) {
     match table.blocks().is_empty() {
-        true => fire_into::<A, 1, false>(table, finding, firing),
-        false => fire_in_blocks(table, finding, firing),
+        true => fire_into::<A, 1, false>(table, search, firing),
+        false => fire_in_blocks(table, search, firing),
     }
 }
 
 /// Works like [`fire_row_into`], but is compiled only once for all operators; for rare calls.
 pub(super) fn fire_row_by_any<A: Arrays>(
     table: &A,
-    mut finding: Finding<'_, 1>,
-    firing: &mut impl Act<1>,
+    mut search: RuleSearch<'_, 1>,
+    firing: &mut impl FiringConsumer<1>,
 ) {
     if !table.blocks().is_empty() {
-        return fire_in_blocks(table, finding, firing);
+        return fire_in_blocks(table, search, firing);
     }
-    finding.find_degrees(table);
+    search.find_degrees(table);
     let (and, or) = (table.and(), table.or());
     let (and, or) = (|a, b| and.of(a, b), |a, b| or.of(a, b));
-    fire_with::<A, 1, false>(table, and, or, finding, firing);
+    fire_with::<A, 1, false>(table, and, or, search, firing);
 }
 
 #[inline(always)]
-fn fire_in_blocks<A: Arrays>(table: &A, mut finding: Finding<'_, 1>, firing: &mut impl Act<1>) {
-    finding.find_degrees(table);
-    let Finding {
+fn fire_in_blocks<A: Arrays>(
+    table: &A,
+    mut search: RuleSearch<'_, 1>,
+    firing: &mut impl FiringConsumer<1>,
+) {
+    search.find_degrees(table);
+    let RuleSearch {
         degrees,
         partial,
         stack,
         ..
-    } = finding;
+    } = search;
     fire_blocks(table, degrees, partial, stack, firing);
 }
 
@@ -187,26 +191,26 @@ fn fire_in_blocks<A: Arrays>(table: &A, mut finding: Finding<'_, 1>, firing: &mu
 #[inline(always)]
 fn fire_into<A: Arrays, const L: usize, const CELLS: bool>(
     table: &A,
-    mut finding: Finding<'_, L>,
-    firing: &mut impl Act<L>,
+    mut search: RuleSearch<'_, L>,
+    firing: &mut impl FiringConsumer<L>,
 ) {
     if !CELLS {
-        finding.find_degrees(table);
+        search.find_degrees(table);
     }
     // The common operators get their own instances, so that the loops do not branch on the operator.
     match (table.and(), table.or()) {
         (Conjunction::Minimum, Disjunction::Maximum) => {
-            fire_with::<A, L, CELLS>(table, smaller, larger, finding, firing);
+            fire_with::<A, L, CELLS>(table, smaller, larger, search, firing);
         }
         (Conjunction::Product, or) => {
-            fire_with::<A, L, CELLS>(table, |a, b| a * b, |a, b| or.of(a, b), finding, firing);
+            fire_with::<A, L, CELLS>(table, |a, b| a * b, |a, b| or.of(a, b), search, firing);
         }
         (and, or) => {
             fire_with::<A, L, CELLS>(
                 table,
                 |a, b| and.of(a, b),
                 |a, b| or.of(a, b),
-                finding,
+                search,
                 firing,
             );
         }
@@ -218,17 +222,17 @@ fn fire_with<A: Arrays, const L: usize, const CELLS: bool>(
     table: &A,
     and: impl Fn(f64, f64) -> f64,
     or: impl Fn(f64, f64) -> f64,
-    finding: Finding<'_, L>,
-    firing: &mut impl Act<L>,
+    search: RuleSearch<'_, L>,
+    firing: &mut impl FiringConsumer<L>,
 ) {
-    let Finding {
+    let RuleSearch {
         values,
         degrees,
         alive,
         partial,
         next,
         stack,
-    } = finding;
+    } = search;
     match table.conjunctions() {
         Conjunctions::Uniform {
             actions_a_cell,
@@ -292,13 +296,13 @@ fn into_unit(degree: f64) -> f64 {
 /// Computes the degrees of an antecedent into `top`. `stack` must be at least as long as the depth of the program.
 #[inline(always)]
 pub(super) fn run<const L: usize>(
-    steps: &[Step],
+    steps: &[AntecedentStep],
     degrees: &[[f64; L]],
     (and, or): (impl Fn(f64, f64) -> f64, impl Fn(f64, f64) -> f64),
     stack: &mut [[f64; L]],
     top: &mut [f64; L],
 ) {
-    let degree = |step: &Step| &degrees[step.literal as usize];
+    let degree = |step: &AntecedentStep| &degrees[step.literal as usize];
     let mut rest = steps;
     match steps.split_first() {
         Some((first, after)) if first.op == Op::PUSH => {

@@ -4,7 +4,7 @@ use core::f64::consts::{PI, SQRT_2};
 
 use libm::{atan2, erfc, log, pow, sqrt};
 
-use super::Kind;
+use super::ShapeKind;
 use super::numeric::{gauss, root};
 use super::operators::{larger, smaller};
 
@@ -37,8 +37,8 @@ pub struct Flank {
     pub moment: f64,
     /// The area beyond the foot; Gaussians only.
     pub beyond: f64,
-    /// The kind of membership function; [`Kind::PIECEWISE`] is a straight line from `left` to `right`.
-    pub kind: Kind,
+    /// The kind of membership function; [`ShapeKind::PIECEWISE`] is a straight line from `left` to `right`.
+    pub kind: ShapeKind,
     /// The index of the first knot.
     pub first_knot: u32,
     /// The index after the last knot.
@@ -86,7 +86,7 @@ impl Flank {
     /// may differ by less than the last digit.
     #[inline(always)]
     pub(crate) fn is_level(&self) -> bool {
-        self.left == self.right && self.kind == Kind::PIECEWISE
+        self.left == self.right && self.kind == ShapeKind::PIECEWISE
     }
 
     /// Returns the foot, and the degree there.
@@ -111,7 +111,7 @@ impl Flank {
 
     /// Returns the degree at `x`.
     pub(crate) fn degree(&self, x: f64) -> f64 {
-        if self.kind == Kind::PIECEWISE {
+        if self.kind == ShapeKind::PIECEWISE {
             let (left, right) = (x - self.from, self.to - x);
             // Measured from the nearer end, so that the degrees at the ends are exact.
             return if left < right {
@@ -137,7 +137,7 @@ impl Flank {
         // The side of the shape's middle: left is -1, right is 1.
         let side = if self.rises() { -1.0 } else { 1.0 };
         let x = match self.kind {
-            Kind::PIECEWISE => {
+            ShapeKind::PIECEWISE => {
                 let (low, high) = (degree - self.left, self.right - degree);
                 if libm::fabs(low) < libm::fabs(high) {
                     self.from + (self.to - self.from) * (low / (low + high))
@@ -145,16 +145,16 @@ impl Flank {
                     self.to - (self.to - self.from) * (high / (low + high))
                 }
             }
-            Kind::GAUSSIAN => a + side * b * sqrt(-2.0 * log(level)),
-            Kind::BELL => a + side * b * pow((1.0 - level) / level, 0.5 / c),
-            Kind::SIGMOID => a + log(level / (1.0 - level)) / b,
-            Kind::S_SHAPE => a + (b - a) * step(level),
-            Kind::Z_SHAPE => b - (b - a) * step(level),
-            Kind::PI_SHAPE if self.rises() => a + (b - a) * step(level),
-            Kind::PI_SHAPE => d - (d - c) * step(level),
-            Kind::COSINE => a + side * (b / PI) * atan2(sqrt(1.0 - level), sqrt(level)),
-            Kind::SPIKE => a - side * 0.1 * b * log(level),
-            Kind::CONCAVE => 2.0 * b - a - (b - a) / level,
+            ShapeKind::GAUSSIAN => a + side * b * sqrt(-2.0 * log(level)),
+            ShapeKind::BELL => a + side * b * pow((1.0 - level) / level, 0.5 / c),
+            ShapeKind::SIGMOID => a + log(level / (1.0 - level)) / b,
+            ShapeKind::S_SHAPE => a + (b - a) * step(level),
+            ShapeKind::Z_SHAPE => b - (b - a) * step(level),
+            ShapeKind::PI_SHAPE if self.rises() => a + (b - a) * step(level),
+            ShapeKind::PI_SHAPE => d - (d - c) * step(level),
+            ShapeKind::COSINE => a + side * (b / PI) * atan2(sqrt(1.0 - level), sqrt(level)),
+            ShapeKind::SPIKE => a - side * 0.1 * b * log(level),
+            ShapeKind::CONCAVE => 2.0 * b - a - (b - a) / level,
             _ => root(self.from, self.to, |x| self.degree(x) - degree),
         };
         // NaN is replaced by the upper end.
@@ -164,7 +164,7 @@ impl Flank {
     /// Returns the area and moment of the tail up to `x`; `degree` is the degree of the flank at `x`.
     pub(crate) fn tail(&self, knots: &[Knot], measure: Measure, x: f64, degree: f64) -> (f64, f64) {
         let (foot, low) = self.foot();
-        if self.kind == Kind::PIECEWISE {
+        if self.kind == ShapeKind::PIECEWISE {
             let signed = x - foot;
             let units = libm::fabs(signed) / measure.unit;
             let area = units * 0.5 * (low + degree);

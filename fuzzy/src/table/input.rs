@@ -1,7 +1,7 @@
 //! Computing the degrees of literals from the value of an input. A literal is a term, with or without hedges.
 
 use super::operators::Hedge;
-use super::{Arrays, Kind};
+use super::{Arrays, ShapeKind};
 use crate::rows::{change, set};
 
 /// An input: its range and its literals.
@@ -59,7 +59,7 @@ pub struct Curve {
     /// The height of the term.
     pub height: f64,
     /// The kind of membership function.
-    pub kind: Kind,
+    pub kind: ShapeKind,
     /// The index of the literal among those of its input.
     pub literal: u32,
     /// The index of the first point, if the function is piecewise linear or a formula.

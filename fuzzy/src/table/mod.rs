@@ -56,7 +56,7 @@
 
 use core::ops::DerefMut;
 
-mod acting;
+mod actions;
 mod activation;
 mod arrays;
 mod blocks;
@@ -76,16 +76,16 @@ pub(crate) mod results;
 mod rules;
 pub(crate) mod set;
 
-pub use acting::Strongest;
+pub use actions::StrongestRule;
 pub use activation::{Activation, Comparison, LEAST_STRENGTH};
 pub(crate) use arrays::{Arrays, arrays_from_fields};
 pub use arrays::{Table, arrays};
 pub use blocks::{Block, Method};
-pub use chain::{Chain, Ends, Place, Sought, Stage, Values};
-pub use check::Damaged;
+pub use chain::{Chain, Ends, Stage, StageIndices, StageRuleCriterion, Values};
+pub use check::DamagedArray;
 pub use closed::{ClosedForm, Coefficient, Consequent, Moment, Pair};
 pub(crate) use closed::{centroid, finite};
-pub use conjunctions::Partial;
+pub use conjunctions::PartialConjunction;
 pub use flank::{Flank, Knot};
 #[cfg(test)]
 pub(crate) use input::degrees_in_rows;
@@ -93,10 +93,10 @@ pub use input::{Curve, Input, Line, Point};
 pub use layers::{Base, LayeredSet, Layers};
 pub use operators::{Aggregation, Conjunction, Disjunction, Hedge, Implication};
 pub use outcome::{Outcome, State};
-pub use rules::{Action, Axis, Dimension, Edge, Node, Op, Program, Step};
+pub use rules::{Action, AntecedentStep, Axis, Dimension, Edge, Node, Op, Program};
 pub use set::{FuzzySet, OfMaxima, Section, SetDefuzzifier, SetTerm, Strand};
 
-pub use crate::shape::Kind;
+pub use crate::shape::ShapeKind;
 
 use crate::rows::{each, set};
 use closed::{closed, closed_apart, partition};
@@ -104,7 +104,7 @@ pub(crate) use closed::{number, value_in_row};
 pub(crate) use firing::{fire, fire_row, has_cells_alone};
 use operators::{larger, smaller};
 pub(crate) use raising::{concluded_by, raised_by};
-use results::Given;
+use results::InputFlags;
 pub(crate) use results::Results;
 
 /// The data structure that finds the firing rules among those that are plain ANDs of terms of
@@ -191,7 +191,8 @@ pub struct Buffers<N, P, S> {
 }
 
 /// Working memory that is borrowed from the caller.
-pub type Scratch<'m> = Buffers<&'m mut [f64], &'m mut [Partial], &'m mut [Strongest]>;
+pub type Scratch<'m> =
+    Buffers<&'m mut [f64], &'m mut [PartialConjunction], &'m mut [StrongestRule]>;
 
 impl Output {
     /// Returns the method that computes the value of the output.
@@ -226,7 +227,7 @@ impl Table<'_> {
     /// # Example: the speed of a fan as a function of temperature
     /// ```
     /// use fuzzy::{Engine, model::{Model, Output, MembershipFunction, Variable}, rule};
-    /// use fuzzy::table::{Outcome, Partial, Scratch, Strongest};
+    /// use fuzzy::table::{Outcome, PartialConjunction, Scratch, StrongestRule};
     ///
     /// let model = Model::builder("fan")
     ///     .input(Variable::new("temperature", 0.0, 40.0).term("hot", MembershipFunction::RightShoulder { foot: 20.0, top: 30.0 }))
@@ -239,12 +240,12 @@ impl Table<'_> {
     /// let mut scratch = Scratch {
     ///     values: &mut [0.0],
     ///     degrees: &mut vec![0.0; sizes.degrees as usize],
-    ///     alive: &mut vec![Partial::NONE; sizes.alive as usize],
-    ///     partial: &mut vec![Partial::NONE; sizes.partial as usize],
-    ///     next: &mut vec![Partial::NONE; sizes.partial as usize],
+    ///     alive: &mut vec![PartialConjunction::NONE; sizes.alive as usize],
+    ///     partial: &mut vec![PartialConjunction::NONE; sizes.partial as usize],
+    ///     next: &mut vec![PartialConjunction::NONE; sizes.partial as usize],
     ///     stack: &mut vec![0.0; sizes.stack as usize],
     ///     strengths: &mut vec![0.0; sizes.strengths as usize],
-    ///     strongest: &mut [Strongest::NONE],
+    ///     strongest: &mut [StrongestRule::NONE],
     /// };
     /// let mut outcomes = [Outcome::UNDEFINED];
     /// table.evaluate(&mut scratch, &[27.5], &mut outcomes);
@@ -266,7 +267,9 @@ impl Table<'_> {
 impl Scratch<'_> {
     /// Returns the same memory as rows of one number each.
     #[inline(always)]
-    pub(crate) fn rows(&mut self) -> Buffers<&mut [[f64; 1]], &mut [Partial], &mut [Strongest]> {
+    pub(crate) fn rows(
+        &mut self,
+    ) -> Buffers<&mut [[f64; 1]], &mut [PartialConjunction], &mut [StrongestRule]> {
         Buffers {
             values: self.values.as_chunks_mut().0,
             degrees: self.degrees.as_chunks_mut().0,
@@ -293,11 +296,11 @@ pub(crate) fn evaluate_row<A, N, P, S>(
 ) where
     A: Arrays,
     N: DerefMut<Target = [[f64; 1]]>,
-    P: DerefMut<Target = [Partial]>,
-    S: DerefMut<Target = [Strongest]>,
+    P: DerefMut<Target = [PartialConjunction]>,
+    S: DerefMut<Target = [StrongestRule]>,
 {
     let inputs = inputs.as_chunks().0.iter().copied();
-    let given = clamp(table, inputs, &mut scratch.values);
+    let input_flags = clamp(table, inputs, &mut scratch.values);
     fire(table, scratch);
     let mut in_row = |index: usize, output: &Output, _, strengths: &[[f64; 1]]| {
         let strengths = strengths.as_flattened();
@@ -305,7 +308,13 @@ pub(crate) fn evaluate_row<A, N, P, S>(
     };
     let mut results = Results::NONE;
     for (index, outcome) in (0..table.outputs().len()).zip(outcomes) {
-        fill(table, scratch, (index, given), &mut in_row, &mut results);
+        fill(
+            table,
+            scratch,
+            (index, input_flags),
+            &mut in_row,
+            &mut results,
+        );
         *outcome = results.outcome(0);
     }
 }
@@ -323,13 +332,13 @@ pub(crate) fn evaluate_rows<A, N, P, S, const L: usize, const CELLS: bool>(
 ) where
     A: Arrays,
     N: DerefMut<Target = [[f64; L]]>,
-    P: DerefMut<Target = [Partial<L>]>,
-    S: DerefMut<Target = [Strongest<L>]>,
+    P: DerefMut<Target = [PartialConjunction<L>]>,
+    S: DerefMut<Target = [StrongestRule<L>]>,
 {
-    let given = clamp(table, inputs, &mut scratch.values);
+    let input_flags = clamp(table, inputs, &mut scratch.values);
     fire::<_, _, _, _, L, CELLS>(table, scratch);
     for (index, results) in (0..table.outputs().len()).zip(results) {
-        fill(table, scratch, (index, given), &mut in_row, results);
+        fill(table, scratch, (index, input_flags), &mut in_row, results);
     }
 }
 
@@ -339,8 +348,8 @@ pub(crate) fn clamp<A: Arrays, const L: usize>(
     table: &A,
     inputs: impl Iterator<Item = [f64; L]>,
     values: &mut [[f64; L]],
-) -> Given<L> {
-    let mut given = Given {
+) -> InputFlags<L> {
+    let mut input_flags = InputFlags {
         clamped: [0; L],
         infinite: [0; L],
     };
@@ -348,17 +357,17 @@ pub(crate) fn clamp<A: Arrays, const L: usize>(
         // NaN is replaced by the upper end.
         let nearest = each(|row| larger(smaller(values[row], input.high), input.low));
         for row in 0..L {
-            given.clamped[row] |= u64::from(nearest[row] != values[row]);
+            input_flags.clamped[row] |= u64::from(nearest[row] != values[row]);
         }
         // Values that are not finite are outside the range, which is rare.
-        if given.clamped.iter().fold(0, |any, one| any | one) != 0 {
-            for (infinite, value) in given.infinite.iter_mut().zip(&values) {
+        if input_flags.clamped.iter().fold(0, |any, one| any | one) != 0 {
+            for (infinite, value) in input_flags.infinite.iter_mut().zip(&values) {
                 *infinite |= u64::from(!value.is_finite());
             }
         }
         *inside = nearest;
     }
-    given
+    input_flags
 }
 
 /// Writes the results of an output after the rules have fired.
@@ -366,16 +375,16 @@ pub(crate) fn clamp<A: Arrays, const L: usize>(
 fn fill<A, N, P, S, const L: usize>(
     table: &A,
     scratch: &mut Buffers<N, P, S>,
-    (index, given): (usize, Given<L>),
+    (index, input_flags): (usize, InputFlags<L>),
     in_row: &mut impl FnMut(usize, &Output, usize, &[[f64; L]]) -> Option<f64>,
     results: &mut Results<L>,
 ) where
     A: Arrays,
     N: DerefMut<Target = [[f64; L]]>,
-    S: DerefMut<Target = [Strongest<L>]>,
+    S: DerefMut<Target = [StrongestRule<L>]>,
 {
     let output = &table.outputs()[index];
-    let Strongest { strength, rule } = &scratch.strongest[index];
+    let StrongestRule { strength, rule } = &scratch.strongest[index];
     let strengths = output.first_strength as usize..output.end_strength as usize;
     let strengths = &scratch.strengths[strengths];
     let (inputs, values) = (&scratch.values, &mut results.values);
@@ -398,5 +407,5 @@ fn fill<A, N, P, S, const L: usize>(
     results.default_values.fill(output.default_value);
     results.coverage = *strength;
     results.rules = *rule;
-    results.given = given;
+    results.input_flags = input_flags;
 }

@@ -2,9 +2,9 @@
 
 use core::ops::DerefMut;
 
-use super::acting::{Act, Strongest, fires};
+use super::actions::{FiringConsumer, StrongestRule, fires};
 use super::closed::closed;
-use super::conjunctions::Partial;
+use super::conjunctions::PartialConjunction;
 use super::firing::fire_row_by_any;
 use super::{Action, Arrays, Buffers, ClosedForm, Output, Scratch, Table, clamp, value_in_row};
 
@@ -46,8 +46,8 @@ pub(crate) fn raised_by<A, N, P, S>(
 where
     A: Arrays,
     N: DerefMut<Target = [[f64; 1]]>,
-    P: DerefMut<Target = [Partial]>,
-    S: DerefMut<Target = [Strongest]>,
+    P: DerefMut<Target = [PartialConjunction]>,
+    S: DerefMut<Target = [StrongestRule]>,
 {
     let middle = 0.5 * (table.outputs().get(output)?.low + value);
     let score = |alone: f64| alone - middle;
@@ -66,8 +66,8 @@ pub(crate) fn concluded_by<A, N, P, S>(
 where
     A: Arrays,
     N: DerefMut<Target = [[f64; 1]]>,
-    P: DerefMut<Target = [Partial]>,
-    S: DerefMut<Target = [Strongest]>,
+    P: DerefMut<Target = [PartialConjunction]>,
+    S: DerefMut<Target = [StrongestRule]>,
 {
     const NOT_AT_ALL: f64 = 1e-9;
     let score = |alone: f64| degree(alone).max(NOT_AT_ALL);
@@ -85,17 +85,17 @@ fn most<A, N, P, S>(
 where
     A: Arrays,
     N: DerefMut<Target = [[f64; 1]]>,
-    P: DerefMut<Target = [Partial]>,
-    S: DerefMut<Target = [Strongest]>,
+    P: DerefMut<Target = [PartialConjunction]>,
+    S: DerefMut<Target = [StrongestRule]>,
 {
     let inputs = inputs.as_chunks().0.iter().copied();
-    let given = clamp(table, inputs, &mut scratch.values);
-    if given.infinite != [0] {
+    let input_flags = clamp(table, inputs, &mut scratch.values);
+    if input_flags.infinite != [0] {
         return None;
     }
     let of: &Output = table.outputs().get(output)?;
-    let (finding, strengths, _) = scratch.split();
-    let (values, first) = (finding.values(), of.first_strength);
+    let (search, strengths, _) = scratch.split();
+    let (values, first) = (search.values(), of.first_strength);
     let strengths = strengths.get_mut(first as usize..of.end_strength as usize)?;
     strengths.fill([0.0]);
     let score = |strength: u32| {
@@ -115,18 +115,18 @@ where
         *strengths.get_mut(index)? = [0.0];
         alone.filter(|value| !value.is_nan()).map(score)
     };
-    let mut raising = Raising {
+    let mut largest = LargestIncrease {
         least: table.least_strength(),
         output: output as u32,
         score,
         most: None,
     };
-    fire_row_by_any(table, finding, &mut raising);
-    raising.most.map(|(_, rule)| rule as usize)
+    fire_row_by_any(table, search, &mut largest);
+    largest.most.map(|(_, rule)| rule as usize)
 }
 
 /// Records the rule that raises an output most.
-struct Raising<F> {
+struct LargestIncrease<F> {
     least: f64,
     output: u32,
     /// The score of the value that the output has if only the firing strength with this index is 1 and all others are
@@ -136,7 +136,7 @@ struct Raising<F> {
     most: Option<(f64, u32)>,
 }
 
-impl<F: FnMut(u32) -> Option<f64>> Act<1> for Raising<F> {
+impl<F: FnMut(u32) -> Option<f64>> FiringConsumer<1> for LargestIncrease<F> {
     fn act(&mut self, actions: &[Action], _row: usize, degree: f64) {
         for action in actions {
             let strength = fires(action.weight * degree, self.least);

@@ -13,12 +13,12 @@ pub(crate) struct Results<const L: usize> {
     pub(crate) coverage: [f64; L],
     /// The [numbers](number_of) of the rules with those strengths, infinite if none is above 0.
     pub(crate) rules: [f64; L],
-    pub(crate) given: Given<L>,
+    pub(crate) input_flags: InputFlags<L>,
 }
 
 /// Flags of the inputs of `L` rows. They are as wide as the values, so that a vector contains equally many.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Given<const L: usize> {
+pub(crate) struct InputFlags<const L: usize> {
     /// 1 if an input was outside its range, else 0.
     pub(crate) clamped: [u64; L],
     /// 1 if an input is NaN or infinite, else 0.
@@ -43,7 +43,7 @@ impl<const L: usize> Results<L> {
         values: [f64::NAN; L],
         coverage: [0.0; L],
         rules: [f64::INFINITY; L],
-        given: Given {
+        input_flags: InputFlags {
             clamped: [0; L],
             infinite: [0; L],
         },
@@ -58,7 +58,7 @@ impl<const L: usize> Results<L> {
         } else {
             value
         };
-        if self.given.infinite[row] != 0 {
+        if self.input_flags.infinite[row] != 0 {
             f64::NAN
         } else {
             value
@@ -84,14 +84,14 @@ impl<const L: usize> Results<L> {
         self.rules[row] = outcome
             .dominant_rule
             .map_or(f64::INFINITY, |rule| number_of(rule as u32));
-        self.given.clamped[row] = u64::from(outcome.clamped);
-        self.given.infinite[row] = u64::from(outcome.state == State::InputNotFinite);
+        self.input_flags.clamped[row] = u64::from(outcome.clamped);
+        self.input_flags.infinite[row] = u64::from(outcome.state == State::InputNotFinite);
     }
 
     /// Returns the outcome of a row.
     #[inline(always)]
     pub(crate) fn outcome(&self, row: usize) -> Outcome {
-        if self.given.infinite[row] != 0 {
+        if self.input_flags.infinite[row] != 0 {
             return Outcome {
                 state: State::InputNotFinite,
                 ..Outcome::UNDEFINED
@@ -108,7 +108,7 @@ impl<const L: usize> Results<L> {
             },
             coverage: self.coverage[row],
             dominant_rule: self.dominant(row).map(|rule| rule as usize),
-            clamped: self.given.clamped[row] != 0,
+            clamped: self.input_flags.clamped[row] != 0,
         }
     }
 }

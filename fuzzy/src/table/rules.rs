@@ -121,7 +121,7 @@ pub struct Program {
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(C)]
-pub struct Step {
+pub struct AntecedentStep {
     /// The operation.
     pub op: Op,
     /// The index of the literal among those of all inputs; 0 if the operation has no literal.

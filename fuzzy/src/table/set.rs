@@ -9,7 +9,7 @@
 use super::flank::{Flank, Knot, Measure};
 use super::numeric::root;
 use super::operators::{larger, smaller};
-use super::{Arrays, ClosedForm, Kind, Output};
+use super::{Arrays, ClosedForm, Output, ShapeKind};
 pub(crate) use maxima::Maxima;
 
 mod bisector;
@@ -126,7 +126,7 @@ pub struct Strand {
 }
 
 /// The arrays of one set.
-struct Prepared<'t> {
+struct SetArrays<'t> {
     set: &'t FuzzySet,
     sections: &'t [Section],
     strands: &'t [Strand],
@@ -139,7 +139,7 @@ struct Prepared<'t> {
 }
 
 /// A part of the aggregated set: a flank scaled by `degree`, or a plateau of that degree.
-struct Part<'t> {
+struct SetSegment<'t> {
     from: f64,
     to: f64,
     area: f64,
@@ -153,7 +153,7 @@ struct Part<'t> {
 /// Returns the value of a prepared set; `None` if its area is 0.
 pub(super) fn value<A: Arrays>(table: &A, output: &Output, strengths: &[f64]) -> Option<f64> {
     let set = table.sets().get(output.first as usize)?;
-    let prepared = Prepared {
+    let prepared = SetArrays {
         set,
         sections: &table.sections()[set.first_section as usize..set.end_section as usize],
         strands: table.strands(),
@@ -175,7 +175,7 @@ pub(super) fn value<A: Arrays>(table: &A, output: &Output, strengths: &[f64]) ->
     Some(larger(output.low, smaller(output.high, value)))
 }
 
-impl<'t> Prepared<'t> {
+impl<'t> SetArrays<'t> {
     fn centroid(&self, strengths: &[f64]) -> Option<f64> {
         let (mut area, mut moment) = (0.0, 0.0);
         if self.set.sum != 0 {
@@ -214,7 +214,7 @@ impl<'t> Prepared<'t> {
 
     /// Calls `visit` for each part of the aggregated set on a section.
     #[inline(always)]
-    fn parts(&self, section: &Section, strengths: &[f64], visit: impl FnMut(Part<'t>)) {
+    fn parts(&self, section: &Section, strengths: &[f64], visit: impl FnMut(SetSegment<'t>)) {
         let strands = &self.strands[section.first_strand as usize..section.end_strand as usize];
         if self.scales {
             self.scaled(section, strands, strengths, visit);
@@ -234,7 +234,7 @@ impl<'t> Prepared<'t> {
         section: &Section,
         strands: &'t [Strand],
         strengths: &[f64],
-        mut visit: impl FnMut(Part<'t>),
+        mut visit: impl FnMut(SetSegment<'t>),
     ) {
         let (mut from, mut to, mut level) = (section.from, section.to, 0.0);
         for strand in strands {
@@ -295,7 +295,7 @@ impl<'t> Prepared<'t> {
         section: &Section,
         strands: &'t [Strand],
         strengths: &[f64],
-        mut visit: impl FnMut(Part<'t>),
+        mut visit: impl FnMut(SetSegment<'t>),
     ) {
         let scale = |strand: &Strand| strengths[strand.strength as usize];
         let ends = |strand: &Strand| (scale(strand) * strand.left, scale(strand) * strand.right);
@@ -337,9 +337,10 @@ impl<'t> Prepared<'t> {
                 };
                 let x = if before >= 0.0 {
                     from
-                } else if first.kind == Kind::PIECEWISE && second.kind == Kind::PIECEWISE {
+                } else if first.kind == ShapeKind::PIECEWISE && second.kind == ShapeKind::PIECEWISE
+                {
                     from + (to - from) * (before / (before - after))
-                } else if first.kind == Kind::GAUSSIAN && second.kind == Kind::GAUSSIAN {
+                } else if first.kind == ShapeKind::GAUSSIAN && second.kind == ShapeKind::GAUSSIAN {
                     // The logarithm of the ratio has the same sign and needs no exponentials.
                     let ratio =
                         libm::log((scale(strand) * first.height) / (scale(top) * second.height));
@@ -370,9 +371,9 @@ impl<'t> Prepared<'t> {
         &self.flanks[strand.flank as usize]
     }
 
-    fn plateau(&self, (from, to): (f64, f64), degree: f64, from_left: bool) -> Part<'t> {
+    fn plateau(&self, (from, to): (f64, f64), degree: f64, from_left: bool) -> SetSegment<'t> {
         let (area, moment) = self.measure.rectangle(from, to, degree);
-        Part {
+        SetSegment {
             from,
             to,
             area,
@@ -392,7 +393,7 @@ impl<'t> Prepared<'t> {
         (from, to): (f64, f64),
         known: (f64, f64),
         from_left: bool,
-    ) -> Part<'t> {
+    ) -> SetSegment<'t> {
         let tail = |x: f64| {
             if x == section.from {
                 return strand.left_tail;
@@ -410,7 +411,7 @@ impl<'t> Prepared<'t> {
         let ([left, left_moment], [right, right_moment]) = (tail(from), tail(to));
         // The tail of a falling flank becomes smaller to the right.
         let sign = if flank.right < flank.left { -1.0 } else { 1.0 };
-        Part {
+        SetSegment {
             from,
             to,
             area: sign * (right - left),

@@ -54,12 +54,12 @@ pub(crate) enum Offsets {
         allow(dead_code, reason = "only text has escapes")
     )]
     /// The position of each character, because escapes, line breaks and indentation were resolved.
-    Each(Vec<Letter>),
+    Each(Vec<ScalarCharacter>),
 }
 
 /// A character of a scalar: the index of its first byte in the text of the scalar, and its byte range in the document.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Letter {
+pub(crate) struct ScalarCharacter {
     pub(crate) text: usize,
     pub(crate) document: Range<usize>,
 }

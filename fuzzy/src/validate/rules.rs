@@ -48,10 +48,10 @@ impl<'m> Validator<'m> {
             let message = format!("the confidence of {what} is {confidence}, outside [0, 1]");
             self.error("value-outside-range", here, message, help);
         }
-        for (i, beaten) in against.iter().enumerate() {
-            if !is_degree(beaten.degree) {
+        for (i, rejected) in against.iter().enumerate() {
+            if !is_degree(rejected.degree) {
                 let here = spans.against.get(i).unwrap_or(&spans.whole);
-                let degree = beaten.degree;
+                let degree = rejected.degree;
                 let message =
                     format!("the degree in `against` of {what} is {degree}, outside [0, 1]");
                 self.error("value-outside-range", here, message, help);

@@ -14,7 +14,7 @@ use crate::{
     diagnostic::{Diagnostic, Findings},
     format::{self, Document},
     model::Model,
-    tree::{Letter, Node, Offsets, Scalar, Value},
+    tree::{Node, Offsets, Scalar, ScalarCharacter, Value},
 };
 
 mod cause;
@@ -126,7 +126,7 @@ impl FromStr for Model {
 }
 
 /// A list or mapping whose end has not been reached.
-struct Open {
+struct OpenCollection {
     start: usize,
     end: usize,
     anchor: usize,
@@ -143,7 +143,7 @@ enum Content {
 
 /// A value, with the number of values in it and their nesting depth.
 #[derive(Clone)]
-struct Whole {
+struct SizedNode {
     node: Node,
     values: usize,
     depth: usize,
@@ -154,8 +154,8 @@ fn build(text: &str) -> Result<Node, Box<Diagnostic>> {
         flow_nesting_limit: DEEPEST,
         block_nesting_limit: DEEPEST,
     };
-    let mut open: Vec<Open> = Vec::new();
-    let mut anchors: BTreeMap<usize, Whole> = BTreeMap::new();
+    let mut open: Vec<OpenCollection> = Vec::new();
+    let mut anchors: BTreeMap<usize, SizedNode> = BTreeMap::new();
     let mut from_aliases = 0;
     let mut document = None;
     for event in Parser::new_from_str_with_options(text, options) {
@@ -176,7 +176,7 @@ fn build(text: &str) -> Result<Node, Box<Diagnostic>> {
                     span: bytes,
                 };
                 let (values, depth) = (1 + value.len() / 16, 0);
-                let done = Whole {
+                let done = SizedNode {
                     node,
                     values,
                     depth,
@@ -244,8 +244,8 @@ fn build(text: &str) -> Result<Node, Box<Diagnostic>> {
     })
 }
 
-fn begin(bytes: &Range<usize>, anchor: usize, content: Content) -> Open {
-    Open {
+fn begin(bytes: &Range<usize>, anchor: usize, content: Content) -> OpenCollection {
+    OpenCollection {
         start: bytes.start,
         end: bytes.end,
         anchor,
@@ -255,12 +255,12 @@ fn begin(bytes: &Range<usize>, anchor: usize, content: Content) -> Open {
     }
 }
 
-fn end(ended: Open) -> Whole {
+fn end(ended: OpenCollection) -> SizedNode {
     let value = match ended.content {
         Content::List(items) => Value::List(items),
         Content::Mapping(entries, _) => Value::Mapping(entries),
     };
-    Whole {
+    SizedNode {
         node: Node {
             value,
             span: ended.start..ended.end,
@@ -270,7 +270,7 @@ fn end(ended: Open) -> Whole {
     }
 }
 
-fn put(parent: &mut Open, child: Whole) {
+fn put(parent: &mut OpenCollection, child: SizedNode) {
     parent.end = parent.end.max(child.node.span.end);
     parent.values += child.values;
     parent.depth = parent.depth.max(child.depth + 1);
@@ -374,7 +374,7 @@ fn scalar(document: &str, value: &str, style: ScalarStyle, bytes: &Range<usize>)
 
 /// Returns the span of each character of a scalar's value. The value and the written text have the same characters,
 /// except that white space is folded and indented, and quoted text may contain escapes.
-fn table(written: &str, value: &str, style: ScalarStyle, start: usize) -> Vec<Letter> {
+fn table(written: &str, value: &str, style: ScalarStyle, start: usize) -> Vec<ScalarCharacter> {
     let rest = |from: usize| written.get(from..).unwrap_or("");
     let quoted = matches!(style, ScalarStyle::SingleQuoted | ScalarStyle::DoubleQuoted);
     let mut here = usize::from(quoted);
@@ -393,7 +393,7 @@ fn table(written: &str, value: &str, style: ScalarStyle, start: usize) -> Vec<Le
         };
         let end = (here + length).min(written.len());
         let document = start + here..start + end;
-        letters.push(Letter { text, document });
+        letters.push(ScalarCharacter { text, document });
         here = end;
     }
     letters

@@ -4,7 +4,7 @@ use std::net::SocketAddr;
 
 use flagred_cli::fuzzing::Watch;
 use flagred_flightlog::mavlink::{
-    Next, Sender, Version,
+    PacketScan, Sender, Version,
     dialect::{
         HEARTBEAT_DATA, MavAutopilot, MavMessage, MavModeFlag, MavState, MavType, PARAM_VALUE_DATA,
         SERVO_OUTPUT_RAW_DATA,
@@ -185,7 +185,10 @@ impl Link {
         let told = self.watch.told();
         told.words.iter().for_each(|line| assert_harmless(line));
         for packet in &told.packets {
-            assert!(matches!(next_packet(packet), Next::Packet(_)), "{packet:?}");
+            assert!(
+                matches!(next_packet(packet), PacketScan::Packet(_)),
+                "{packet:?}"
+            );
         }
         for line in &told.json {
             let event: serde_json::Value = serde_json::from_str(line).unwrap();

@@ -6,7 +6,7 @@ use super::yaw::less_yaw;
 
 /// A finding of the balance: its measure, its time and its motor.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Unbalanced {
+pub struct BalanceFinding {
     /// The measure that exceeded its limit.
     pub measure: Measure,
     /// The time at which the finding was raised.
@@ -48,7 +48,7 @@ pub struct Balance {
     /// Whether the motors work as before an alarm.
     pub is_back: bool,
     passed_s: [Option<f64>; 2],
-    found: [Option<Unbalanced>; 2],
+    found: [Option<BalanceFinding>; 2],
 }
 
 /// The trims of the motors.
@@ -118,7 +118,7 @@ impl Balance {
             };
             let since_s = *self.passed_s[i].get_or_insert(t_s);
             if t_s - since_s >= after_s - 1e-6 {
-                self.found[i].get_or_insert(Unbalanced {
+                self.found[i].get_or_insert(BalanceFinding {
                     measure,
                     raised_s: t_s,
                     motor,
@@ -128,7 +128,7 @@ impl Balance {
     }
 
     /// The finding at the end of the flight: a weak motor explains an imbalance.
-    pub fn found(&self) -> Option<Unbalanced> {
+    pub fn found(&self) -> Option<BalanceFinding> {
         self.found[1].or(self.found[0])
     }
 

@@ -7,10 +7,10 @@ use flagred::{
 use fuzzy::Model;
 
 use super::{
-    balance::{Balance, Trims, Unbalanced},
+    balance::{Balance, BalanceFinding, Trims},
     elevated::{self, Stretch},
-    inputs::{self, Now, Observed},
-    levels::{Levels, Moment, Trouble},
+    inputs::{self, Observation, VehicleInputs},
+    levels::{Levels, Moment, RaisedEpisode},
     rules,
     yaw::less_yaw,
 };
@@ -65,13 +65,13 @@ pub fn samples(flight: &flagred_flightlog::Flight) -> Vec<Sample> {
 }
 
 /// The results of the flights of a log.
-pub struct Followed {
+pub struct ReferenceResults {
     /// The results after each sample that the log reports as in the air.
     pub rows: Vec<Row>,
     /// The findings of the risk.
-    pub troubles: Vec<Trouble>,
+    pub episodes: Vec<RaisedEpisode>,
     /// The findings of the balance: the last one of each time in the air.
-    pub unbalanced: Vec<Unbalanced>,
+    pub unbalanced: Vec<BalanceFinding>,
 }
 
 /// State that is kept over a gap in the air: the trims, and after an alarm the last time at which the motors did not
@@ -84,12 +84,12 @@ pub fn follow(
     factors: &[[f64; 3]],
     profile: &Profile,
     model: &Model,
-) -> Followed {
+) -> ReferenceResults {
     let longest_gap_s = profile.sampling.longest_gap_s;
     let mut rows = Vec::new();
-    let mut troubles = Vec::new();
+    let mut episodes = Vec::new();
     let mut unbalanced = Vec::new();
-    let mut air: Option<Air> = None;
+    let mut air: Option<AirborneState> = None;
     let mut kept: Option<AcrossGap> = None;
     let mut down_since_s = None;
     let mut before_s: Option<f64> = None;
@@ -107,7 +107,7 @@ pub fn follow(
                 let of_air = air.end(profile, None);
                 let doubt_s = of_air.level_at_end.then_some(t_s);
                 kept = Some((of_air.trims, doubt_s));
-                troubles.extend(of_air.troubles);
+                episodes.extend(of_air.episodes);
                 unbalanced.extend(of_air.unbalanced);
             }
             if since_s.is_some_and(|s| s < 0.0) {
@@ -130,7 +130,7 @@ pub fn follow(
         if sample.in_air && (falls || !rests) {
             falls &= reads_motors(profile);
             down_since_s = None;
-            let air = air.get_or_insert_with(|| Air::new(t_s, profile, kept.take()));
+            let air = air.get_or_insert_with(|| AirborneState::new(t_s, profile, kept.take()));
             air.falls = falls;
             rows.push(air.take_in(sample, held_s.unwrap_or(0.0), factors, (profile, model)));
             continue;
@@ -151,18 +151,18 @@ pub fn follow(
             && let Some(air) = air.take()
         {
             let of_air = air.end(profile, Some(down_s));
-            troubles.extend(of_air.troubles);
+            episodes.extend(of_air.episodes);
             unbalanced.extend(of_air.unbalanced);
         }
     }
     if let Some(air) = air {
         let of_air = air.end(profile, down_since_s);
-        troubles.extend(of_air.troubles);
+        episodes.extend(of_air.episodes);
         unbalanced.extend(of_air.unbalanced);
     }
-    Followed {
+    ReferenceResults {
         rows,
-        troubles,
+        episodes,
         unbalanced,
     }
 }
@@ -181,7 +181,7 @@ fn reads_motors(profile: &Profile) -> bool {
 }
 
 /// Whether the motors idle on the ground: before take-off, or after a flight unless a high risk came just before.
-fn rests(air: &mut Option<Air>, sample: &Sample, profile: &Profile) -> bool {
+fn rests(air: &mut Option<AirborneState>, sample: &Sample, profile: &Profile) -> bool {
     if sample.lacks_a_motor() {
         return false;
     }
@@ -200,18 +200,18 @@ fn rests(air: &mut Option<Air>, sample: &Sample, profile: &Profile) -> bool {
 }
 
 /// A time in the air. The state is reset before and after it.
-struct Air {
+struct AirborneState {
     take_off_s: f64,
     /// Values that ended before this time do not count in the long windows.
     since_s: f64,
     /// The observed values of each input.
-    observed: Vec<Vec<Observed>>,
+    observed: Vec<Vec<Observation>>,
     risks: Vec<Stretch>,
     /// The rate in % per second after the last of the risks, and the elevated risk in %.
     elevated: Option<(f64, f64)>,
     moments: Vec<Moment>,
     levels: Levels,
-    troubles: Vec<Trouble>,
+    episodes: Vec<RaisedEpisode>,
     balance: Balance,
     /// After an alarm: the last time at which the motors did not work as before.
     in_doubt_s: Option<f64>,
@@ -223,18 +223,18 @@ struct Air {
 }
 
 /// The results of a time in the air.
-struct OfAir {
-    troubles: Vec<Trouble>,
-    unbalanced: Option<Unbalanced>,
+struct AirborneResults {
+    episodes: Vec<RaisedEpisode>,
+    unbalanced: Option<BalanceFinding>,
     trims: Trims,
     /// Whether an alarm was raised at the end.
     level_at_end: bool,
 }
 
-impl Air {
-    fn new(take_off_s: f64, profile: &Profile, kept: Option<AcrossGap>) -> Air {
+impl AirborneState {
+    fn new(take_off_s: f64, profile: &Profile, kept: Option<AcrossGap>) -> AirborneState {
         let (trims, in_doubt_s) = kept.unwrap_or_default();
-        Air {
+        AirborneState {
             levels: Levels::new(),
             balance: Balance::new(trims),
             in_doubt_s,
@@ -244,18 +244,18 @@ impl Air {
             risks: Vec::new(),
             elevated: None,
             moments: Vec::new(),
-            troubles: Vec::new(),
+            episodes: Vec::new(),
             fell: None,
             falls: false,
             last_high_s: f64::NEG_INFINITY,
         }
     }
 
-    fn end(mut self, profile: &Profile, landed_s: Option<f64>) -> OfAir {
+    fn end(mut self, profile: &Profile, landed_s: Option<f64>) -> AirborneResults {
         let level_at_end = self.is_alarm();
         self.stop(profile, landed_s);
-        OfAir {
-            troubles: self.troubles,
+        AirborneResults {
+            episodes: self.episodes,
             unbalanced: self.balance.found(),
             trims: self.balance.trims,
             level_at_end,
@@ -269,7 +269,7 @@ impl Air {
 
     /// Ends the findings and resets the elevated risk.
     fn stop(&mut self, profile: &Profile, landed_s: Option<f64>) {
-        self.troubles
+        self.episodes
             .extend(self.levels.end(&profile.verdict, landed_s));
         self.moments.clear();
         self.begin_anew();
@@ -291,14 +291,14 @@ impl Air {
         let Sample {
             t_s, ref commands, ..
         } = *sample;
-        let now = Now {
+        let now = VehicleInputs {
             commands,
             less_yaw: &less_yaw(commands, factors),
             signals: &sample.signals,
         };
         let span = (t_s - held_s, t_s);
         for (input, observed) in profile.inputs.iter().zip(&mut self.observed) {
-            observed.push(Observed::new(profile, &input.source, span, &now));
+            observed.push(Observation::new(profile, &input.source, span, &now));
         }
         self.settle(t_s, profile);
         let settled_s = profile.sampling.take_off_s + profile.sampling.warm_up_s;

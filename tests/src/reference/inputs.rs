@@ -15,7 +15,7 @@ const MORE_S: f64 = 5.0;
 
 /// The observation of an input in one sample, and its time span.
 #[derive(Clone)]
-pub struct Observed {
+pub struct Observation {
     /// Start in seconds.
     pub from_s: f64,
     /// End in seconds.
@@ -27,7 +27,7 @@ pub struct Observed {
 }
 
 /// The state of a vehicle at one time.
-pub struct Now<'a> {
+pub struct VehicleInputs<'a> {
     /// The effective commands of the motors.
     pub commands: &'a [f64],
     /// The same commands without yaw.
@@ -36,16 +36,21 @@ pub struct Now<'a> {
     pub signals: &'a [f64],
 }
 
-impl Observed {
+impl Observation {
     /// The observation of a source in a sample.
-    pub fn new(profile: &Profile, source: &Source, span: (f64, f64), now: &Now<'_>) -> Observed {
+    pub fn new(
+        profile: &Profile,
+        source: &Source,
+        span: (f64, f64),
+        now: &VehicleInputs<'_>,
+    ) -> Observation {
         let names = profile.signals();
         let signal = |name: &str| {
             let place = names.iter().position(|known| *known == name);
             place.map_or(f64::NAN, |place| now.signals[place])
         };
         let (from_s, to_s) = span;
-        let of = |values: Vec<f64>| Observed {
+        let of = |values: Vec<f64>| Observation {
             from_s,
             to_s,
             values,
@@ -100,7 +105,7 @@ impl Observed {
 /// do not count in long windows.
 pub fn values(
     profile: &Profile,
-    observed: &[Vec<Observed>],
+    observed: &[Vec<Observation>],
     now_s: f64,
     since_s: f64,
 ) -> Vec<Option<f64>> {
@@ -138,14 +143,14 @@ fn exponential(
     profile: &Profile,
     source: &Source,
     now_s: f64,
-    observed: &[Observed],
+    observed: &[Observation],
 ) -> Option<f64> {
     let constant_s = source.window_s;
     let falls = |at_s: f64| ((at_s - now_s) / constant_s).exp();
     let known = observed
         .iter()
         .filter(|o| !o.values.is_empty() && o.to_s > o.from_s);
-    let inside: Vec<(f64, &Observed)> = known
+    let inside: Vec<(f64, &Observation)> = known
         .map(|o| (constant_s * (falls(o.to_s) - falls(o.from_s)), o))
         .collect();
     let sampling = &profile.sampling;
@@ -160,7 +165,7 @@ fn exponential(
 }
 
 /// A statistic of weighted values; the values of one sample share its weight.
-fn of_weights(statistic: &Statistic, inside: &[(f64, &Observed)]) -> f64 {
+fn of_weights(statistic: &Statistic, inside: &[(f64, &Observation)]) -> f64 {
     let mean_of = |f: &dyn Fn(f64) -> f64| {
         let values = inside.iter().flat_map(|(weight, observed)| {
             let weight = weight / observed.values.len() as f64;
@@ -200,7 +205,7 @@ struct Slot {
     value: f64,
 }
 
-fn slots(window: &Window, spans: &[(f64, f64)], inside: &[(f64, &Observed)]) -> Vec<Slot> {
+fn slots(window: &Window, spans: &[(f64, f64)], inside: &[(f64, &Observation)]) -> Vec<Slot> {
     let mut slots = Vec::new();
     let mut rest = inside;
     for spans in window.slots(spans) {
@@ -257,14 +262,14 @@ fn value(
     profile: &Profile,
     statistic: &Statistic,
     window: &Window,
-    observed: &[Observed],
+    observed: &[Observation],
 ) -> Option<f64> {
     let begin_s = window.now_s - window.length_s - MORE_S;
     let first = observed.partition_point(|observed| observed.to_s < begin_s);
     let known = observed[first..]
         .iter()
         .filter(|observed| !observed.values.is_empty());
-    let mut all: Vec<&Observed> = known.collect();
+    let mut all: Vec<&Observation> = known.collect();
     if *statistic == Statistic::Last {
         let latest = observed.last()?;
         let count = latest.values.len() as f64;
@@ -277,10 +282,11 @@ fn value(
         all = of_bins.iter().collect();
         latest = all.pop_if(|bin| bin_of(bin.to_s) == bin_of(window.now_s));
     }
-    let has_time = |observed: &&Observed| observed.to_s > observed.from_s;
+    let has_time = |observed: &&Observation| observed.to_s > observed.from_s;
     all.retain(has_time);
     let spans: Vec<(f64, f64)> = all.iter().map(|o| (o.from_s, o.to_s)).collect();
-    let mut inside: Vec<(f64, &Observed)> = window.weights(&spans).into_iter().zip(all).collect();
+    let mut inside: Vec<(f64, &Observation)> =
+        window.weights(&spans).into_iter().zip(all).collect();
     let slots = slots(window, &spans, &inside);
     inside.retain(|(weight, _)| *weight > 0.0);
     // The bin of the latest sample counts in full.
@@ -308,9 +314,9 @@ fn bin_of(t_s: f64) -> f64 {
 }
 
 /// The means of the samples of each bin, with the time span of its samples.
-fn bins(observed: &[&Observed]) -> Vec<Observed> {
+fn bins(observed: &[&Observation]) -> Vec<Observation> {
     let of_bins = observed.chunk_by(|a, b| bin_of(a.to_s) == bin_of(b.to_s));
-    let mut bins: Vec<Observed> = Vec::new();
+    let mut bins: Vec<Observation> = Vec::new();
     for samples in of_bins {
         let value = mean(samples.iter().map(|sample| (1.0, sample.values[0])));
         let held_s: f64 = samples
@@ -319,7 +325,7 @@ fn bins(observed: &[&Observed]) -> Vec<Observed> {
             .sum();
         let to_s = samples[samples.len() - 1].to_s;
         let before = bins.last().map_or(value, |bin| bin.values[0]);
-        bins.push(Observed {
+        bins.push(Observation {
             from_s: to_s - held_s,
             to_s,
             values: vec![value],

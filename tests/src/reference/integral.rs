@@ -163,10 +163,10 @@ fn bisector(
 }
 
 /// A position with the degree and the slope there.
-type Place = (f64, f64, f64);
+type SlopedPoint = (f64, f64, f64);
 
 fn maxima(set: &Set<'_>, pieces: &[Piece]) -> Option<f64> {
-    let seen: Vec<Vec<Place>> = pieces
+    let seen: Vec<Vec<SlopedPoint>> = pieces
         .iter()
         .map(|piece| {
             let places = grid(*piece, 1e-10).map(|x| (x, (set.degree)(x), (set.slope)(x)));
@@ -207,9 +207,9 @@ fn maxima(set: &Set<'_>, pieces: &[Piece]) -> Option<f64> {
 }
 
 /// The peaks of a set with their degrees, from left to right.
-fn peaks(set: &Set<'_>, pieces: &[Piece], seen: &[Vec<Place>]) -> Vec<(f64, f64)> {
+fn peaks(set: &Set<'_>, pieces: &[Piece], seen: &[Vec<SlopedPoint>]) -> Vec<(f64, f64)> {
     let mut peaks = Vec::new();
-    let mut before: Option<Place> = None;
+    let mut before: Option<SlopedPoint> = None;
     for (&(from, to), places) in pieces.iter().zip(seen) {
         let (first, last) = (places[0], places[GRID as usize]);
         let (rises, left) = before.map_or((true, first.1), |place| (place.2 > 0.0, place.1));

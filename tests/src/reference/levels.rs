@@ -22,7 +22,7 @@ pub struct Moment {
 
 /// An episode with a level above GOOD.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Trouble {
+pub struct RaisedEpisode {
     /// The worst level of the episode.
     pub level: Level,
     /// Time since which the first raised level was reached.
@@ -48,7 +48,7 @@ pub struct Levels {
     held_s: f64,
     /// Whether FAIL is being reached, for any duration.
     reaches_fail: bool,
-    all: Vec<Trouble>,
+    all: Vec<RaisedEpisode>,
 }
 
 impl Levels {
@@ -96,7 +96,7 @@ impl Levels {
             };
             if higher > self.level && t_s - since_s >= of.after_s - ROUNDING_S {
                 if self.level == Level::Good {
-                    self.all.push(Trouble {
+                    self.all.push(RaisedEpisode {
                         level: higher,
                         from_s: since_s,
                         raised_s: t_s,
@@ -118,11 +118,11 @@ impl Levels {
     }
 
     /// Ends the flight, because the vehicle landed or its state became unknown, and returns the episodes.
-    pub fn end(&mut self, settings: &VerdictSettings, landed_s: Option<f64>) -> Vec<Trouble> {
+    pub fn end(&mut self, settings: &VerdictSettings, landed_s: Option<f64>) -> Vec<RaisedEpisode> {
         let ended = std::mem::take(self);
         let mut all = ended.all;
         // A landing cancels an open WARN that was raised just before it, unless FAIL is being reached.
-        let is_late = |open: &Trouble| {
+        let is_late = |open: &RaisedEpisode| {
             landed_s.is_some_and(|t_s| t_s - open.raised_s < settings.quiet_before_landing_s)
         };
         let is_warn = ended.level > Level::Good && !ended.reaches_fail;

@@ -11,7 +11,7 @@ use fuzzy::rule::{Condition, Proposition};
 
 use super::number::Dual;
 use super::operators::{and, hedged, or};
-use super::sets::{Fired, Kinks, aggregated, crossings, highest, levels};
+use super::sets::{FiredTerm, Kinks, aggregated, crossings, highest, levels};
 use super::shapes::{membership, parameters};
 
 /// The aggregated set of an output, as the argument of a defuzzifier.
@@ -303,7 +303,7 @@ fn number(
     places.dedup();
     let operators = model.operators_of_output(output);
     let (low, high) = (output.variable.low, output.variable.high);
-    let fired: Vec<Fired<'_>> = fired
+    let fired: Vec<FiredTerm<'_>> = fired
         .iter()
         .map(|(strength, term)| (*strength, highest(term, low, high), *term))
         .collect();

@@ -10,10 +10,10 @@ use super::shapes::{membership, parameters};
 pub(super) type Kinks<'a> = Vec<Box<dyn Fn(f64) -> f64 + 'a>>;
 
 /// A term with its strength and its highest degree.
-pub(super) type Fired<'m> = (f64, f64, &'m Term);
+pub(super) type FiredTerm<'m> = (f64, f64, &'m Term);
 
 /// Functions that change their sign where the implication of a term has a kink or a step.
-pub(super) fn levels<'a>(fired: &'a [Fired<'a>], operators: Operators) -> Kinks<'a> {
+pub(super) fn levels<'a>(fired: &'a [FiredTerm<'a>], operators: Operators) -> Kinks<'a> {
     let mut kinks: Kinks<'a> = Vec::new();
     for (strength, highest, term) in fired {
         let mut levels = match operators.implication {
@@ -32,7 +32,7 @@ pub(super) fn levels<'a>(fired: &'a [Fired<'a>], operators: Operators) -> Kinks<
 }
 
 /// Functions that change their sign where the aggregation has a kink or a step.
-pub(super) fn crossings<'a>(fired: &'a [Fired<'a>], operators: Operators) -> Kinks<'a> {
+pub(super) fn crossings<'a>(fired: &'a [FiredTerm<'a>], operators: Operators) -> Kinks<'a> {
     let mut kinks: Kinks<'a> = Vec::new();
     for i in 0..fired.len() {
         let part = move |j: usize, x: f64| aggregated(&fired[j..=j], operators, x);
@@ -69,7 +69,7 @@ pub(super) fn crossings<'a>(fired: &'a [Fired<'a>], operators: Operators) -> Kin
 }
 
 /// The degree of an aggregated set of terms, each with its strength and highest degree.
-pub(super) fn aggregated<T: Number>(fired: &[Fired<'_>], operators: Operators, x: T) -> T {
+pub(super) fn aggregated<T: Number>(fired: &[FiredTerm<'_>], operators: Operators, x: T) -> T {
     let parts = fired
         .iter()
         .map(|one| activate(operators.implication, *one, x));
@@ -80,7 +80,11 @@ pub(super) fn aggregated<T: Number>(fired: &[Fired<'_>], operators: Operators, x
 
 /// A fired term at `x`. A strength that equals its highest degree except for rounding cuts nothing off; the drastic operator then
 /// leaves no single peak.
-fn activate<T: Number>(implication: Conjunction, (strength, highest, term): Fired<'_>, x: T) -> T {
+fn activate<T: Number>(
+    implication: Conjunction,
+    (strength, highest, term): FiredTerm<'_>,
+    x: T,
+) -> T {
     let degree = T::of(term.height) * membership(&term.membership_function, x);
     let whole = is_whole(strength, highest);
     let activated = and(implication, T::of(strength), degree);

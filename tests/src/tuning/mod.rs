@@ -14,7 +14,7 @@ mod votes;
 
 pub use candidates::{CANDIDATES, candidate, with_step};
 pub use folds::{folds, judge, tune_without};
-pub use objective::{AREAS, Area, EXCESSES, Excess};
+pub use objective::{AREAS, Area, FALSE_ALARM_SETS, FalseAlarmSet};
 pub use rows::{Data, Row, Set, read};
 pub use search::tune;
 pub use shares::{Share, risks_pct, shares, with_shares};

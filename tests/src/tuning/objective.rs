@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::{
     rows::{Row, Set},
-    votes::{Input, Sum, Votes},
+    votes::{Input, Votes, WeightedSum},
 };
 
 /// A set of rows over which the area under the ROC curve counts.
@@ -64,7 +64,7 @@ pub const AREAS: [Area; 8] = [
 
 /// A set of rows over which a high risk is a false alarm.
 #[derive(Debug, Clone, Copy)]
-pub struct Excess {
+pub struct FalseAlarmSet {
     /// The name of this set of rows.
     pub name: &'static str,
     /// Whether a row belongs to the set.
@@ -76,14 +76,14 @@ pub struct Excess {
 }
 
 /// The sets of rows over which a high risk is penalised.
-pub const EXCESSES: [Excess; 3] = [
-    Excess {
+pub const FALSE_ALARM_SETS: [FalseAlarmSet; 3] = [
+    FalseAlarmSet {
         name: "ordinary real flights",
         holds: |row| row.set.is_real() && row.kind == "ordinary",
         above_pct: 50.0,
         cost: 0.015,
     },
-    Excess {
+    FalseAlarmSet {
         name: "sitl3 hover, yaw, mission and pilot, not critical",
         holds: |row| {
             let kinds = ["hover_noise", "yaw", "mission", "pilot"];
@@ -92,7 +92,7 @@ pub const EXCESSES: [Excess; 3] = [
         above_pct: 50.0,
         cost: 0.015,
     },
-    Excess {
+    FalseAlarmSet {
         name: "sitl2 calm",
         holds: |row| row.set == Set::Sitl2 && row.kind == "calm",
         above_pct: 30.0,
@@ -104,13 +104,13 @@ pub const EXCESSES: [Excess; 3] = [
 pub(super) struct Problem {
     pub(super) columns: Vec<Vec<f64>>,
     /// For each row, the degree to which votes count, and the sum of the fixed rules.
-    given: Vec<(f64, Sum)>,
+    given: Vec<(f64, WeightedSum)>,
     /// The rows of each of [`AREAS`]: those that became critical, and the others.
     areas: Vec<[Vec<u32>; 2]>,
     /// The weight of each row: `sqrt(n) / n` with the number `n` of rows of its vehicle, so that
     /// long logs do not dominate.
     weights: Vec<f64>,
-    /// The rows of each of [`EXCESSES`].
+    /// The rows of each of [`FALSE_ALARM_SETS`].
     excesses: Vec<Vec<u32>>,
 }
 
@@ -135,13 +135,16 @@ impl Problem {
             columns: votes.inputs.iter().map(column).collect(),
             given: rows.iter().map(|row| votes.given(&row.inputs)).collect(),
             areas: AREAS.iter().map(area).collect(),
-            excesses: EXCESSES.iter().map(|excess| which(&excess.holds)).collect(),
+            excesses: FALSE_ALARM_SETS
+                .iter()
+                .map(|excess| which(&excess.holds))
+                .collect(),
         }
     }
 
     /// The score of votes, given their sums at each row.
-    pub(super) fn score(&self, sums: impl Iterator<Item = Sum>) -> f64 {
-        let risk = |((given, written), votes): (&(f64, Sum), Sum)| {
+    pub(super) fn score(&self, sums: impl Iterator<Item = WeightedSum>) -> f64 {
+        let risk = |((given, written), votes): (&(f64, WeightedSum), WeightedSum)| {
             let weights = written.weights + given * votes.weights;
             (written.values + given * votes.values) / weights.max(1e-9)
         };
@@ -151,7 +154,7 @@ impl Problem {
             score += area.weight * self.roc(&risks, rows);
         }
         score /= AREAS.iter().map(|area| area.weight).sum::<f64>();
-        for (excess, rows) in EXCESSES.iter().zip(&self.excesses) {
+        for (excess, rows) in FALSE_ALARM_SETS.iter().zip(&self.excesses) {
             let over = rows
                 .iter()
                 .map(|row| (risks[*row as usize] - excess.above_pct).max(0.0));

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::{
     objective::Problem,
     rows::Row,
-    votes::{Input, Sum, Vote, Votes},
+    votes::{Input, Vote, Votes, WeightedSum},
 };
 
 /// The possible weights of a rule; a rule with weight 0 is dropped.
@@ -42,7 +42,7 @@ pub fn tune(template: &Votes, rows: &[&Row]) -> Votes {
 
 /// A part of the votes that may change: of an input, or of a term.
 #[derive(Clone, Copy)]
-enum Part {
+enum VotePart {
     Peak,
     Consequent,
     Weight,
@@ -53,27 +53,27 @@ enum Part {
 fn descend(mut votes: Votes, problem: &Problem, seed: u64) -> (Votes, f64) {
     let mut random = fastrand::Rng::with_seed(seed);
     let consequents = votes.consequents.clone();
-    let of_input = |input: &Input, column: &[f64]| -> Vec<Sum> {
+    let of_input = |input: &Input, column: &[f64]| -> Vec<WeightedSum> {
         column.iter().map(|x| input.sum(*x, &consequents)).collect()
     };
-    let mut sums: Vec<Vec<Sum>> = votes
+    let mut sums: Vec<Vec<WeightedSum>> = votes
         .inputs
         .iter()
         .zip(&problem.columns)
         .map(|(input, column)| of_input(input, column))
         .collect();
     let mut best = problem.score(total(&sums, usize::MAX).into_iter());
-    let mut coordinates: Vec<(usize, Part, usize)> = Vec::new();
+    let mut coordinates: Vec<(usize, VotePart, usize)> = Vec::new();
     for (i, input) in votes.inputs.iter().enumerate() {
         if !input.is_tuned() {
             continue;
         }
-        coordinates.push((i, Part::Weights, 0));
+        coordinates.push((i, VotePart::Weights, 0));
         for term in 0..input.peaks.len() {
-            coordinates.push((i, Part::Peak, term));
+            coordinates.push((i, VotePart::Peak, term));
             if input.votes[term].is_some() {
-                coordinates.push((i, Part::Consequent, term));
-                coordinates.push((i, Part::Weight, term));
+                coordinates.push((i, VotePart::Consequent, term));
+                coordinates.push((i, VotePart::Weight, term));
             }
         }
     }
@@ -85,7 +85,7 @@ fn descend(mut votes: Votes, problem: &Problem, seed: u64) -> (Votes, f64) {
             let range = votes.range(&votes.inputs[i]);
             for changed in changes(&votes.inputs[i], part, term, range, &consequents) {
                 let own = of_input(&changed, &problem.columns[i]);
-                let all = others.iter().zip(&own).map(|(a, b)| Sum {
+                let all = others.iter().zip(&own).map(|(a, b)| WeightedSum {
                     values: a.values + b.values,
                     weights: a.weights + b.weights,
                 });
@@ -105,8 +105,8 @@ fn descend(mut votes: Votes, problem: &Problem, seed: u64) -> (Votes, f64) {
 }
 
 /// The sums of all inputs but one, at each row.
-fn total(sums: &[Vec<Sum>], without: usize) -> Vec<Sum> {
-    let mut total = vec![Sum::default(); sums.first().map_or(0, Vec::len)];
+fn total(sums: &[Vec<WeightedSum>], without: usize) -> Vec<WeightedSum> {
+    let mut total = vec![WeightedSum::default(); sums.first().map_or(0, Vec::len)];
     for (_, sums) in sums.iter().enumerate().filter(|(i, _)| *i != without) {
         for (total, sum) in total.iter_mut().zip(sums) {
             total.values += sum.values;
@@ -119,7 +119,7 @@ fn total(sums: &[Vec<Sum>], without: usize) -> Vec<Sum> {
 /// The variants of an input with one changed part.
 fn changes(
     input: &Input,
-    part: Part,
+    part: VotePart,
     term: usize,
     range: (f64, f64),
     consequents: &[f64],
@@ -130,27 +130,27 @@ fn changes(
         changed
     };
     let all: Vec<Input> = match (part, input.votes[term]) {
-        (Part::Peak, _) => {
+        (VotePart::Peak, _) => {
             let peaks = near(input.peaks[term], range).into_iter();
             peaks
                 .map(|peak| with(&|changed| changed.peaks[term] = peak))
                 .collect()
         }
-        (Part::Consequent, Some(vote)) => {
+        (VotePart::Consequent, Some(vote)) => {
             let others = (0..consequents.len()).filter(|consequent| *consequent != vote.consequent);
             let others = others.map(|consequent| Vote { consequent, ..vote });
             others
                 .map(|vote| with(&|changed| changed.votes[term] = Some(vote)))
                 .collect()
         }
-        (Part::Weight, Some(vote)) => {
+        (VotePart::Weight, Some(vote)) => {
             let others = WEIGHTS.into_iter().filter(|weight| *weight != vote.weight);
             let others = others.map(|weight| Vote { weight, ..vote });
             others
                 .map(|vote| with(&|changed| changed.votes[term] = Some(vote)))
                 .collect()
         }
-        (Part::Weights, _) => [-1, 1]
+        (VotePart::Weights, _) => [-1, 1]
             .into_iter()
             .map(|step| {
                 with(&|changed| {

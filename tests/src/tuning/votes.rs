@@ -53,12 +53,12 @@ struct FixedRule {
 
 /// A weighted sum of consequents, and the sum of the weights.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Sum {
+pub(super) struct WeightedSum {
     pub(super) values: f64,
     pub(super) weights: f64,
 }
 
-impl Sum {
+impl WeightedSum {
     pub(super) fn add(&mut self, weight: f64, value: f64) {
         self.values += weight * value;
         self.weights += weight;
@@ -67,8 +67,8 @@ impl Sum {
 
 impl Input {
     /// The sum of the input's votes at a value.
-    pub(super) fn sum(&self, x: f64, consequents: &[f64]) -> Sum {
-        let mut sum = Sum::default();
+    pub(super) fn sum(&self, x: f64, consequents: &[f64]) -> WeightedSum {
+        let mut sum = WeightedSum::default();
         self.degrees(x, |term, degree| {
             if let Some(vote) = self.votes[term] {
                 sum.add(degree * vote.weight, consequents[vote.consequent]);
@@ -207,14 +207,14 @@ impl Votes {
     }
 
     /// The degree to which votes count at a row, and the sum of the fixed rules.
-    pub(super) fn given(&self, inputs: &[f64]) -> (f64, Sum) {
+    pub(super) fn given(&self, inputs: &[f64]) -> (f64, WeightedSum) {
         let degree = |condition: &[(usize, usize)]| {
             let degrees = condition.iter().map(|(place, term)| {
                 self.model.inputs[*place].terms[*term].membership(inputs[*place])
             });
             degrees.product::<f64>()
         };
-        let mut sum = Sum::default();
+        let mut sum = WeightedSum::default();
         for rule in &self.written {
             let weight = degree(&rule.condition) * rule.weight;
             sum.add(weight, self.consequents[rule.consequent]);

@@ -170,12 +170,12 @@ pub(super) fn records(flight: &Flight) -> Vec<Record> {
 }
 
 /// The output at a record: risk and elevated risk in %, and level.
-pub(super) type Said = (usize, f64, f64, Level);
+pub(super) type RecordOutput = (usize, f64, f64, Level);
 
 /// The output of a run of the script.
 #[derive(Default)]
 pub(super) struct Run {
-    pub(super) logged: Vec<Said>,
+    pub(super) logged: Vec<RecordOutput>,
     pub(super) texts: String,
     pub(super) values: usize,
     /// The reason why the autopilot could not be armed.

@@ -13,20 +13,24 @@ use flagred_tests::{
     flagred,
 };
 
-use crate::autopilot::{Record, Run, Said, Vehicle, records, run};
+use crate::autopilot::{Record, RecordOutput, Run, Vehicle, records, run};
 
 /// The maximum difference of a risk, in percentage points.
 const TOLERANCE_PCT: f64 = 0.1;
 
 /// The monitor's result for the first sample with a known risk in each tenth of a second, which is what the script logs.
-fn by_the_monitor(estimator: &Estimator, vehicle: &Vehicle, records: &[Record]) -> Vec<Said> {
+fn by_the_monitor(
+    estimator: &Estimator,
+    vehicle: &Vehicle,
+    records: &[Record],
+) -> Vec<RecordOutput> {
     let signals = estimator.profile().signals();
     let craft = Craft::new(vehicle.factors.len())
         .with_signals(&signals)
         .with_optional(&signals)
         .with_geometry(&vehicle.factors);
     let mut monitor = Monitor::new(estimator, craft).unwrap();
-    let (mut said, mut bin) = (Vec::new(), None);
+    let (mut output, mut bin) = (Vec::new(), None);
     for (i, record) in records.iter().enumerate() {
         let motors: Vec<f64> = record
             .pwm
@@ -51,7 +55,7 @@ fn by_the_monitor(estimator: &Estimator, vehicle: &Vehicle, records: &[Record]) 
             bin = Some(t_us / 100_000);
             // The script does not report information, because it is not a warning.
             let level = update.level.filter(|level| *level > Level::Info);
-            said.push((
+            output.push((
                 i,
                 estimate.risk_pct,
                 elevated_pct,
@@ -59,12 +63,12 @@ fn by_the_monitor(estimator: &Estimator, vehicle: &Vehicle, records: &[Record]) 
             ));
         }
     }
-    said
+    output
 }
 
 /// The largest differences of risk and elevated risk; levels must be equal.
-fn differ(expected: &[Said], found: &[Said], what: &str) -> (f64, f64) {
-    let at = |said: &[Said]| said.iter().map(|said| said.0).collect::<Vec<usize>>();
+fn differ(expected: &[RecordOutput], found: &[RecordOutput], what: &str) -> (f64, f64) {
+    let at = |output: &[RecordOutput]| output.iter().map(|output| output.0).collect::<Vec<usize>>();
     assert_eq!(at(expected), at(found), "{what}: known at other times");
     let (mut risk, mut elevated, mut at_edge) = (0.0_f64, 0.0_f64, 0);
     for (expected, found) in expected.iter().zip(found) {
@@ -256,7 +260,7 @@ fn the_script_reports_levels_and_causes_of_any_frame() {
         run.assert_within_budget(name);
         for level in [Level::Good, Level::Warn, Level::Fail] {
             assert!(
-                expected.iter().any(|said| said.3 == level),
+                expected.iter().any(|output| output.3 == level),
                 "{name}: never {level}"
             );
         }
@@ -288,7 +292,7 @@ fn the_script_obeys_its_parameters_and_survives_an_error() {
     let warned = |run: &Run| {
         run.logged
             .iter()
-            .filter(|said| said.3 > Level::Good)
+            .filter(|output| output.3 > Level::Good)
             .count()
     };
     let usual = run(&script, &vehicle, records, &[]);

@@ -11,7 +11,7 @@ use std::{collections::BTreeSet, path::Path, process::Command};
 use flagred::{
     board::{
         self, Factors, OwnedMemory, Plan,
-        table::{Partial, Scratch, Strongest, Table},
+        table::{PartialConjunction, Scratch, StrongestRule, Table},
     },
     estimator::Estimator,
     monitor::{Craft, Monitor},
@@ -63,12 +63,12 @@ fn by_the_monitor(estimator: &Estimator, geometry: &[Factors], flight: &[Moment]
             .with_geometry(geometry),
     )
     .unwrap();
-    let said = flight
+    let output = flight
         .iter()
         .map(|moment| told(&monitor.push(&moment.sample())));
-    let mut said: Vec<String> = said.collect();
-    said.push(findings(&monitor.finish()));
-    said
+    let mut output: Vec<String> = output.collect();
+    output.push(findings(&monitor.finish()));
+    output
 }
 
 fn on_board(plan: &Plan<'_>, geometry: &[Factors], flight: &[Moment]) -> Vec<String> {
@@ -76,12 +76,12 @@ fn on_board(plan: &Plan<'_>, geometry: &[Factors], flight: &[Moment]) -> Vec<Str
         if !geometry.is_empty() {
             monitor.set_geometry(geometry).unwrap();
         }
-        let said = flight
+        let output = flight
             .iter()
             .map(|moment| told(&monitor.push(&moment.sample())));
-        let mut said: Vec<String> = said.collect();
-        said.push(findings(&monitor.finish()));
-        said
+        let mut output: Vec<String> = output.collect();
+        output.push(findings(&monitor.finish()));
+        output
     })
 }
 
@@ -143,7 +143,8 @@ fn plans_agree_with_the_estimator_on_a_grid_of_inputs() {
             for point in points(&estimator, along(&estimator)) {
                 let expected = estimator.at(&point);
                 known += usize::from(expected.is_some());
-                filled += usize::from(expected.is_some_and(|said| said.filled_from > Some(0.0)));
+                filled +=
+                    usize::from(expected.is_some_and(|output| output.filled_from > Some(0.0)));
                 let found = monitor.at(&point);
                 assert_eq!(
                     moment(expected.as_ref()),
@@ -199,12 +200,12 @@ fn an_action_without_an_output_raises_nothing() {
         let mut scratch = Scratch {
             values: &mut [0.0; 2],
             degrees: &mut vec![0.0; sizes.degrees as usize],
-            alive: &mut vec![Partial::NONE; sizes.alive as usize],
-            partial: &mut vec![Partial::NONE; sizes.partial as usize],
-            next: &mut vec![Partial::NONE; sizes.partial as usize],
+            alive: &mut vec![PartialConjunction::NONE; sizes.alive as usize],
+            partial: &mut vec![PartialConjunction::NONE; sizes.partial as usize],
+            next: &mut vec![PartialConjunction::NONE; sizes.partial as usize],
             stack: &mut vec![0.0; sizes.stack as usize],
             strengths: &mut vec![0.0; sizes.strengths as usize],
-            strongest: &mut [Strongest::NONE],
+            strongest: &mut [StrongestRule::NONE],
         };
         *found = table.raised_by(&mut scratch, &[0.3, 0.1], 0, 10.0);
     }
@@ -395,12 +396,16 @@ fn an_ambiguous_geometry_is_refused_and_changes_nothing() {
                 Err(board::SetupError::Geometry)
             );
         }
-        let said = flight
+        let output = flight
             .iter()
             .map(|moment| told(&monitor.push(&moment.sample())));
-        let mut said: Vec<String> = said.collect();
-        said.push(findings(&monitor.finish()));
-        assert_same(&by_the_monitor(&estimator, &[], &flight), &said, "refused");
+        let mut output: Vec<String> = output.collect();
+        output.push(findings(&monitor.finish()));
+        assert_same(
+            &by_the_monitor(&estimator, &[], &flight),
+            &output,
+            "refused",
+        );
     });
     let with_it = by_the_monitor(&estimator, &known, &flight);
     assert!(with_it != by_the_monitor(&estimator, &[], &flight));
@@ -505,8 +510,8 @@ fn tables_of_every_kind_agree_with_the_estimator_in_borrowed_memory_and_in_c() {
             .map(|point| moment(estimator.at(point).as_ref()))
             .collect();
         let lent: Vec<String> = with_monitor(&plan, 1, |monitor| {
-            let said = points.iter().map(|point| monitor.at(point));
-            said.map(|said| moment(said.as_ref())).collect()
+            let output = points.iter().map(|point| monitor.at(point));
+            output.map(|output| moment(output.as_ref())).collect()
         });
         assert_same(&expected, &lent, &name);
         let (command, _folder) = c::program("tests/c/follow.c", &name, (&file, &name));

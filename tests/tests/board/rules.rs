@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use flagred::{
     board::{
         Evaluator, RuleMemory, Rules,
-        table::{Outcome, Partial, State, Strongest},
+        table::{Outcome, PartialConjunction, State, StrongestRule},
     },
     plan,
 };
@@ -116,8 +116,8 @@ fn lent(rules: &Rules<'_>, points: &[Vec<f64>]) -> Vec<String> {
     assert_eq!(rules.check(), Ok(()));
     let outputs = rules.table.outputs.len();
     let mut numbers = vec![0.0; rules.numbers()];
-    let mut partials = vec![Partial::NONE; rules.partials()];
-    let mut strongest = vec![Strongest::NONE; outputs];
+    let mut partials = vec![PartialConjunction::NONE; rules.partials()];
+    let mut strongest = vec![StrongestRule::NONE; outputs];
     let [mut all, mut own] = [(); 2].map(|()| vec![Outcome::UNDEFINED; outputs]);
     let memory = RuleMemory {
         numbers: &mut numbers,
@@ -213,12 +213,12 @@ fn exported_rust_agrees_with_the_engine() {
         let model: Model = std::fs::read_to_string(path).unwrap().parse().unwrap();
         let engine = Engine::new(&model).unwrap();
         let points = points(&model);
-        let said = points
+        let output = points
             .iter()
             .map(|point| told(&evaluate(point[..].try_into().unwrap())));
         assert_same(
             &by_the_engine(&engine, &points),
-            &said.collect::<Vec<_>>(),
+            &output.collect::<Vec<_>>(),
             file,
         );
     }

@@ -88,7 +88,7 @@ impl Piece {
 }
 
 /// A plan in C with its arrays.
-struct Copied {
+struct PlanCopy {
     plan: Box<Plan>,
     pieces: Vec<Piece>,
     counts: Vec<*mut usize>,
@@ -120,7 +120,7 @@ impl Arrays {
 
 macro_rules! copy {
     ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {
-        fn copy(plan: &board::Plan<'_>) -> Copied {
+        fn copy(plan: &board::Plan<'_>) -> PlanCopy {
             let table = plan.rules.table;
             let mut arrays = Arrays::default();
             let filled = plan.filled.unwrap_or(FilledKnots { coordinates: &[], starts: &[], values: &[], distances: &[] });
@@ -178,7 +178,7 @@ macro_rules! copy {
                 pieces.push(Piece((&raw mut plan.coverage_below).cast(), 8));
                 pieces.push(Piece((&raw mut plan.settings).cast(), size_of::<CSettings>()));
             }
-            Copied { plan, pieces, counts, _arrays: kept }
+            PlanCopy { plan, pieces, counts, _arrays: kept }
         }
     };
     (@keep Hedge $arrays:expr, $items:expr) => {

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from typing_extensions import Self, disjoint_base
 
-from .errors import Diagnostic
+from ._errors import Diagnostic
 
 __all__ = [
     "VERSION",
@@ -337,7 +337,7 @@ class FlightData:
 @disjoint_base
 class AssessmentData:
     def __new__(
-        cls, flight: FlightData, profile: Profile, step_s: float | None, said: str | None = None
+        cls, flight: FlightData, profile: Profile, step_s: float | None, json_text: str | None = None
     ) -> Self: ...
     def _json(self) -> str: ...
     def _step_s(self) -> float | None: ...

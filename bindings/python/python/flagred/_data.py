@@ -92,7 +92,7 @@ class Intervals(NamedTuple):
     """The sum of their lengths."""
 
 
-class LeftOut(NamedTuple):
+class LeftOutCounts(NamedTuple):
     """The numbers of items of a log beyond the limits; these are not kept."""
 
     texts: int
@@ -115,7 +115,7 @@ class Report(NamedTuple):
     """Whether the log ends inside a message."""
     reason: str | None
     """The reason of the first skipped data."""
-    left_out: LeftOut
+    left_out: LeftOutCounts
 
     @property
     def is_clean(self) -> bool:

@@ -13,7 +13,7 @@ import numpy as np
 from . import _data
 from ._core import AssessmentData, FlightData, Profile, Table
 from ._data import Event, Finding, Gap, Geometry, Intervals, Motor, Parameter, Range, Report, Summary, Vehicle
-from .errors import DataError
+from ._errors import DataError
 from ._picture import framed
 from ._tables import names_of
 
@@ -246,7 +246,7 @@ class Flight(FlightData):
     def report(self) -> Report:
         """Amount of data read, and damage."""
         data = self._data["report"]
-        return Report(**{**data, "left_out": _data.LeftOut(**data["left_out"])})
+        return Report(**{**data, "left_out": _data.LeftOutCounts(**data["left_out"])})
 
     @cached_property
     def gaps(self) -> list[Gap]:
@@ -453,8 +453,8 @@ def _unpickled_flight(
     return FlightData.__new__(Flight, log, name, signals, range, True)
 
 
-def _unpickled_assessment(flight: Flight, profile: Profile, step_s: float | None, said: str) -> Assessment:
-    assessment: Assessment = AssessmentData.__new__(Assessment, flight, profile, step_s, said)
+def _unpickled_assessment(flight: Flight, profile: Profile, step_s: float | None, json_text: str) -> Assessment:
+    assessment: Assessment = AssessmentData.__new__(Assessment, flight, profile, step_s, json_text)
     assessment.flight, assessment.profile = flight, profile
     return assessment
 

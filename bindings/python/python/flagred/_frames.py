@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Any
 
-from .errors import DataError
+from ._errors import DataError
 
 if TYPE_CHECKING:
     from ._core import RuleSet

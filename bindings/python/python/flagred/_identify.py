@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 
 from ._arrays import array
 from ._core import _identify
-from .errors import DataError
+from ._errors import DataError
 from ._learning import Figure
 from ._model import Model, _read
 from ._tables import column_names, column_of, groups_of, names_of, same_length, table_of, whole_numbers
 
-__all__ = ["IdentifyValidation", "Identified", "Step", "identify"]
+__all__ = ["IdentifyResult", "IdentifyStep", "IdentifyValidation", "identify"]
 
 
-class Step(NamedTuple):
+class IdentifyStep(NamedTuple):
     """A step of the search."""
 
     input: str
@@ -43,11 +43,11 @@ class IdentifyValidation(NamedTuple):
     """The first error divided by that of the line."""
 
 
-class Identified(NamedTuple):
+class IdentifyResult(NamedTuple):
     """A rule set identified from data."""
 
     model: Model
-    steps: list[Step]
+    steps: list[IdentifyStep]
     without_rows: int
     """The combinations of terms with too few rows; they have no rule."""
     validation: IdentifyValidation | None
@@ -71,7 +71,7 @@ def identify(
     seed: int = 0,
     validation: bool = True,
     skip_bad_rows: bool = False,
-) -> Identified:
+) -> IdentifyResult:
     """Finds inputs, terms and rules for a column of a table. ``flagred identify`` does the same.
 
     docs/rules-from-data.md describes the search.
@@ -159,8 +159,8 @@ def identify(
     if worth is not None:
         figures = {name: Figure(*worth[name]) for name in ("identified", "linear", "mean", "ratio")}
         worth = IdentifyValidation(worth["folds"], worth["without_value"], **figures)
-    steps = [Step(*step) for step in found["steps"]]
-    return Identified(_read(found["model"], "<model>"), steps, found["without_rows"], worth)
+    steps = [IdentifyStep(*step) for step in found["steps"]]
+    return IdentifyResult(_read(found["model"], "<model>"), steps, found["without_rows"], worth)
 
 
 def _numbers(column: Any) -> NDArray[np.float64] | None:

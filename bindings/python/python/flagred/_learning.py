@@ -7,11 +7,11 @@ from typing import Any, Literal, NamedTuple
 
 from ._arrays import array
 from ._core import _learn, _tune
-from .errors import DataError
+from ._errors import DataError
 from ._model import Model, _read
 from ._tables import column_of, groups_of, names_of, same_length, table_of, whole_numbers
 
-__all__ = ["Errors", "Figure", "Learned", "Moved", "TuneInterrupted", "TuneValidation", "Tuned", "learn", "tune"]
+__all__ = ["ChangedNumber", "Errors", "Figure", "LearnResult", "TuneInterrupted", "TuneResult", "TuneValidation", "learn", "tune"]
 
 
 class Errors(NamedTuple):
@@ -27,7 +27,7 @@ class Errors(NamedTuple):
     """The mean of prediction minus truth."""
 
 
-class Learned(NamedTuple):
+class LearnResult(NamedTuple):
     """Rules learned from rows."""
 
     model: Model
@@ -53,7 +53,7 @@ class Learned(NamedTuple):
     """Cross-validation errors; None if they were not requested."""
 
 
-class Moved(NamedTuple):
+class ChangedNumber(NamedTuple):
     """A number that was changed by tuning."""
 
     of: str
@@ -83,7 +83,7 @@ class TuneValidation(NamedTuple):
     gain: Figure
 
 
-class Tuned(NamedTuple):
+class TuneResult(NamedTuple):
     """A rule set with tuned numbers."""
 
     model: Model
@@ -96,7 +96,7 @@ class Tuned(NamedTuple):
     """The loss of the tuned model on the training rows."""
     without_value: int
     """Rows without a value of the tuned model; they count as the middle of the range."""
-    moved: list[Moved]
+    moved: list[ChangedNumber]
     at_bounds: list[str]
     """Constants, as ``variable.term``, at an end of the range beyond which the loss would be smaller."""
     validation: TuneValidation | None
@@ -110,10 +110,10 @@ class TuneInterrupted(KeyboardInterrupt):
     Ctrl-C.
     """
 
-    best: Tuned
+    best: TuneResult
     """The best result so far, without a validation."""
 
-    def __init__(self, best: Tuned) -> None:
+    def __init__(self, best: TuneResult) -> None:
         super().__init__(best)
         self.best = best
 
@@ -137,7 +137,7 @@ def learn(
     group_by: str | None = None,
     skip_bad_rows: bool = False,
     validation: bool = True,
-) -> Learned:
+) -> LearnResult:
     """Learns rules from rows, after Wang and Mendel (1992). ``flagred learn`` does the same.
 
     Parameters
@@ -199,7 +199,7 @@ def learn(
     }
     found = _learn(model, _rows(model, data, columns, weight, group_by, skip_bad_rows), whole_numbers(options))
     errors = found.pop("validation")
-    return Learned(
+    return LearnResult(
         model=_read(found.pop("model"), "<model>"), validation=None if errors is None else Errors(**errors), **found
     )
 
@@ -226,7 +226,7 @@ def tune(
     folds: int | None = None,
     skip_bad_rows: bool = False,
     threads: int | None = None,
-) -> Tuned:
+) -> TuneResult:
     """Tunes the numbers of a rule set on rows; its rules do not change. ``flagred tune`` does the same.
 
     Parameters
@@ -301,12 +301,12 @@ def tune(
     }
     rows = _rows(model, data, columns, weight, group_by, skip_bad_rows)
     found, was_interrupted = _tune(model, rows, whole_numbers(options), threads)
-    moved = [Moved(*one) for one in found.pop("moved")]
+    moved = [ChangedNumber(*one) for one in found.pop("moved")]
     worth = found.pop("validation")
     if worth is not None:
         folds = worth.pop("folds")
         worth = TuneValidation(folds=folds, **{name: Figure(*figure) for name, figure in worth.items()})
-    tuned = Tuned(model=_read(found.pop("model"), "<model>"), moved=moved, validation=worth, **found)
+    tuned = TuneResult(model=_read(found.pop("model"), "<model>"), moved=moved, validation=worth, **found)
     if was_interrupted:
         raise TuneInterrupted(tuned)
     return tuned

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-class Followed(NamedTuple):
+class MonitorResult(NamedTuple):
     """The results of a flight that a monitor followed."""
 
     verdict: Literal["GOOD", "WARN", "FAIL", "NA"]
@@ -111,13 +111,13 @@ class Monitor(MonitorData):
         """The findings that ended with the latest sample."""
         return [_data.finding(finding) for finding in json.loads(self._ended())]
 
-    def finish(self) -> Followed | None:
+    def finish(self) -> MonitorResult | None:
         """Ends the flight and returns its results; None without a sample. Later samples belong to a new flight."""
         finished, self._has_begun = self._finish(), False
         if finished is None:
             return None
         data, steps = json.loads(finished[0]), finished[1]
-        return Followed(
+        return MonitorResult(
             verdict=data["verdict"]["verdict"],
             reason=data["verdict"].get("reason"),
             findings=[_data.finding(finding) for finding in data["findings"]],

@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 
 from ._arrays import array
 from ._core import _simplify
-from .errors import DataError
+from ._errors import DataError
 from ._model import Model, _read
 from ._tables import column_of, same_length, table_of, whole_numbers
 
-__all__ = ["Difference", "Simplified", "simplify"]
+__all__ = ["Difference", "SimplifyResult", "simplify"]
 
 
 class Difference(NamedTuple):
@@ -23,7 +23,7 @@ class Difference(NamedTuple):
     inputs: dict[str, float]
 
 
-class Simplified(NamedTuple):
+class SimplifyResult(NamedTuple):
     """A simplified rule set with the same outputs."""
 
     model: Model
@@ -47,7 +47,7 @@ def simplify(
     rows_only: bool = False,
     seed: int = 0,
     columns: Mapping[str, str] | None = None,
-) -> Simplified:
+) -> SimplifyResult:
     """Simplifies a rule set: fewer rules and inputs, same outputs. ``flagred simplify`` does the same.
 
     Parameters
@@ -105,4 +105,4 @@ def simplify(
     if difference is not None:
         output, before, after, inputs = difference
         difference = Difference(output, before, after, dict(zip(names, inputs)))
-    return Simplified(model=_read(found.pop("model"), "<model>"), difference=difference, **found)
+    return SimplifyResult(model=_read(found.pop("model"), "<model>"), difference=difference, **found)

@@ -12,7 +12,7 @@ import numpy as np
 
 from ._arrays import array
 from ._core import EvaluationData, Profile, Table
-from .errors import DataError
+from ._errors import DataError
 from ._flight import Flight, read_log
 from ._picture import framed
 from ._tables import column_names, column_of, same_length, table_of
@@ -31,7 +31,7 @@ __all__ = [
     "Evaluation",
     "LeftOutFile",
     "NeedlessAlarms",
-    "Said",
+    "ProfileResult",
     "Span",
     "Upsets",
     "WarningTime",
@@ -208,7 +208,7 @@ class WarningTime(NamedTuple):
     """Whether it does not belong to an episode."""
 
 
-class Said(NamedTuple):
+class ProfileResult(NamedTuple):
     """The results of a profile for a flight."""
 
     verdict: Literal["GOOD", "WARN", "FAIL", "NA"]
@@ -233,7 +233,7 @@ class EvaluatedFlight(NamedTuple):
     steps: int
     critical: int
     """The critical steps."""
-    profiles: dict[str, Said]
+    profiles: dict[str, ProfileResult]
 
 
 class LeftOutFile(NamedTuple):
@@ -289,8 +289,8 @@ def _estimator(data: dict[str, Any]) -> Estimator:
     )
 
 
-def _said(data: dict[str, Any]) -> Said:
-    return Said(
+def _profile_result(data: dict[str, Any]) -> ProfileResult:
+    return ProfileResult(
         data["verdict"],
         [Span(**span) for span in data["alarms"]],
         [Span(**span) for span in data["fails"]],
@@ -331,7 +331,7 @@ class Evaluation(EvaluationData):
         """The flights, in their order; empty for ``rows``."""
         return [
             EvaluatedFlight(
-                **{**data, "profiles": {name: _said(said) for name, said in data["profiles"].items()}}
+                **{**data, "profiles": {name: _profile_result(result) for name, result in data["profiles"].items()}}
             )
             for data in self._data["records"]
         ]

@@ -22,7 +22,7 @@ from ._data import (
     Geometry,
     Interval,
     Intervals,
-    LeftOut,
+    LeftOutCounts,
     Motor,
     MotorFinding,
     Parameter,
@@ -33,18 +33,19 @@ from ._data import (
     Vehicle,
 )
 from ._edit import Operators, Output, Rule, Rules, Term, Variable, Variables
-from .errors import Diagnostic
+from ._errors import Diagnostic
 from ._flight import Assessment, Flight, Signal, Signals
-from ._identify import Identified, IdentifyValidation, Step
-from ._learning import Errors, Figure, Learned, Moved, Tuned, TuneValidation
-from ._monitor import Followed
+from ._identify import IdentifyResult, IdentifyStep, IdentifyValidation
+from ._learning import ChangedNumber, Errors, Figure, LearnResult, TuneResult, TuneValidation
+from ._monitor import MonitorResult
 from ._picture import Picture
-from ._simplify import Difference, Simplified
+from ._simplify import Difference, SimplifyResult
 from .evaluation import Evaluation
 
 __all__ = [
     "Assessment",
     "Cause",
+    "ChangedNumber",
     "Clusters",
     "DecisionMap",
     "Diagnostic",
@@ -59,19 +60,19 @@ __all__ = [
     "Finding",
     "FiredRule",
     "Flight",
-    "Followed",
     "Gap",
     "Geometry",
-    "Identified",
+    "IdentifyResult",
+    "IdentifyStep",
     "IdentifyValidation",
     "Interval",
     "IntervalOutcome",
     "Intervals",
-    "Learned",
-    "LeftOut",
+    "LearnResult",
+    "LeftOutCounts",
+    "MonitorResult",
     "Motor",
     "MotorFinding",
-    "Moved",
     "Operators",
     "Outcome",
     "Outcomes",
@@ -86,13 +87,12 @@ __all__ = [
     "Share",
     "Signal",
     "Signals",
-    "Simplified",
-    "Step",
+    "SimplifyResult",
     "Summary",
     "Table",
     "Term",
+    "TuneResult",
     "TuneValidation",
-    "Tuned",
     "Update",
     "Variable",
     "Variables",

@@ -9,8 +9,8 @@ use flagred_tuning::{Progress, Settings, tune};
 use fuzzy::{
     Engine, Model,
     drawing::short,
-    learn::{self, Learner, Unchained},
-    model::{DataFile, LossChange, Step},
+    learn::{self, LastStage, Learner},
+    model::{DataFile, LossChange, ProvenanceStep},
 };
 use js_sys::Function;
 use serde::Serialize;
@@ -212,7 +212,7 @@ impl DataTable {
     pub fn learn(&self, text: &str, complete: bool) -> Result<String, JsError> {
         let whole = parsed(text)?;
         let refused = |error: learn::LearnError| failure(&error, Some(error.help()));
-        let chain = Unchained::new(&whole).map_err(refused)?;
+        let chain = LastStage::new(&whole).map_err(refused)?;
         let mut model = chain.model().clone();
         model.rules.clear();
         let mut settings = learn::Settings::default();
@@ -240,7 +240,7 @@ impl DataTable {
             }
         }
         let count = learned.model.rules.len();
-        let step = Step {
+        let step = ProvenanceStep {
             command: "flagred learn".into(),
             data: self.source(),
             rows: Some(learned.samples),
@@ -248,7 +248,7 @@ impl DataTable {
                 "strongest resolution; {count} rules learned, {} of them without samples",
                 learned.completed
             )),
-            ..Step::default()
+            ..ProvenanceStep::default()
         };
         let text =
             provenance::rule_set(text, made, step).map_err(|findings| failure(findings, None))?;
@@ -294,7 +294,7 @@ impl DataTable {
         moved: Vec<String>,
     ) -> Result<String, JsError> {
         let digits = |loss: f64| format!("{loss:.5e}").parse().unwrap_or(loss);
-        let step = Step {
+        let step = ProvenanceStep {
             command: "flagred tune".into(),
             data: self.source(),
             rows: Some(rows as u64),
@@ -304,7 +304,7 @@ impl DataTable {
                 after: digits(after),
             }),
             moved,
-            ..Step::default()
+            ..ProvenanceStep::default()
         };
         provenance::rule_set(text, model.clone(), step).map_err(|findings| failure(findings, None))
     }

@@ -6,7 +6,7 @@ mod moving;
 mod tests;
 
 use fuzzy::{
-    format::{Partial, VariableSpans},
+    format::{PartialModel, VariableSpans},
     model::{MembershipFunction, Role, Term, Variable},
 };
 
@@ -84,7 +84,7 @@ pub fn moved(
 
 /// A term in a text.
 struct Place<'d> {
-    rules: &'d Partial,
+    rules: &'d PartialModel,
     text: &'d str,
     index: usize,
     variable: &'d Variable,

@@ -11,14 +11,14 @@ use fuzzy::{
     rule::{Condition, Rule},
 };
 
-use super::{BEFORE_S, Cut, Plan, Row, Rows};
+use super::{BEFORE_S, Cut, FileRows, Plan, Row};
 use crate::{failure::Failure, flights::open_complete};
 
 /// Seconds that rows of [`Cut::Ahead`] omit after take-off and before the end of a time in the air, if the header names no judged time.
 const AFTER_TAKE_OFF_S: f64 = 2.0;
 const BEFORE_END_S: f64 = 1.0;
 
-pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
+pub(super) fn rows(log: &str, plan: &Plan) -> Result<FileRows, Failure> {
     let names = plan.profile.signals();
     let flight = open_complete(log, &names, "gives no rows")?;
     let said = |key: &str| header(&flight, key);
@@ -30,12 +30,12 @@ pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
         .help("`flagred inspect` lists the signals of a log"));
     }
     let errors: Vec<(f64, Attitude)> = flight.attitudes().collect();
-    let mut made = Rows {
+    let mut made = FileRows {
         rows: Vec::new(),
         notes: Vec::new(),
     };
     let mut refused = 0;
-    for Part { air_s, span } in parts(&flight, plan) {
+    for FlightPart { air_s, span } in parts(&flight, plan) {
         let moments = moments(plan.cut, span.from_s, span.to_s);
         let length_s = match plan.cut {
             Cut::Flights => Some(span.length_s()),
@@ -85,17 +85,19 @@ pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
 }
 
 /// A part of a flight from which rows are computed.
-struct Part {
+struct FlightPart {
     /// The time in the air that contains this part.
     air_s: Span,
     /// The time span of this part.
     span: Span,
 }
 
-fn parts(flight: &Flight, plan: &Plan) -> Vec<Part> {
+fn parts(flight: &Flight, plan: &Plan) -> Vec<FlightPart> {
     let Cut::Ahead { .. } = plan.cut else {
         let judged = judged_spans(flight, &plan.profile.verdict);
-        let parts = judged.into_iter().map(|span| Part { air_s: span, span });
+        let parts = judged
+            .into_iter()
+            .map(|span| FlightPart { air_s: span, span });
         return parts.collect();
     };
     let judged = judged_by_header(flight);
@@ -113,7 +115,7 @@ fn parts(flight: &Flight, plan: &Plan) -> Vec<Part> {
             },
         };
         let air_s = Span { from_s, to_s };
-        Part { air_s, span }
+        FlightPart { air_s, span }
     });
     parts.collect()
 }

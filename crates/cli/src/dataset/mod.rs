@@ -89,7 +89,7 @@ struct Row {
 }
 
 /// The rows of one file, and notes for the user about it.
-struct Rows {
+struct FileRows {
     rows: Vec<Row>,
     notes: Vec<String>,
 }
@@ -221,7 +221,7 @@ fn with_margin_and_spread(mut profile: Profile, cut: Cut) -> Profile {
     profile
 }
 
-fn rows_of(log: &str, plan: &Plan) -> Result<Rows, Failure> {
+fn rows_of(log: &str, plan: &Plan) -> Result<FileRows, Failure> {
     if let Some(table) = summary::open(Path::new(log)) {
         return summary::rows(&table?, plan);
     }

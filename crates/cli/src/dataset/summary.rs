@@ -4,7 +4,7 @@ use std::{fs::File, io::Read, path::Path};
 
 use flagred_evaluation::{recipe::recipe, risk_pct};
 
-use super::{Plan, Row, Rows};
+use super::{FileRows, Plan, Row};
 use crate::{
     failure::Failure,
     table::{BadCell, Table},
@@ -28,7 +28,7 @@ pub(super) fn open(path: &Path) -> Option<Result<Table, Failure>> {
     is_summary.then(|| Table::read(path, b','))
 }
 
-pub(super) fn rows(table: &Table, plan: &Plan) -> Result<Rows, Failure> {
+pub(super) fn rows(table: &Table, plan: &Plan) -> Result<FileRows, Failure> {
     let help = "a table of flights needs it for this profile";
     let error = table.header.require(ERROR, help)?;
     let crashed = table.header.column("crashed");
@@ -52,7 +52,7 @@ pub(super) fn rows(table: &Table, plan: &Plan) -> Result<Rows, Failure> {
         }
         recipes.push(recipe);
     }
-    let mut made = Rows {
+    let mut made = FileRows {
         rows: Vec::new(),
         notes: Vec::new(),
     };

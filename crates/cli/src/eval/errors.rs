@@ -2,7 +2,7 @@
 
 use fuzzy::drawing::short;
 
-use super::tally::Rows;
+use super::tally::RowCount;
 use crate::output::say;
 
 /// The number of worst rows that are listed.
@@ -13,7 +13,7 @@ const WORST: usize = 5;
 pub(super) struct Errors {
     rows: u64,
     /// The number of rows without a measured value, and the first of them.
-    unmeasured: Rows,
+    unmeasured: RowCount,
     sum: f64,
     sum_of_squares: f64,
     /// Line, computed and measured value of the rows with the largest errors, the largest first.

@@ -48,7 +48,7 @@ pub(crate) struct Arguments {
 
     /// Add columns that explain the outputs; separate several by commas, or repeat the option
     #[arg(long, value_name = "COLUMN", value_delimiter = ',')]
-    with: Vec<With>,
+    with: Vec<ExplanationColumn>,
 
     /// An input that is known up to a half-width, a number or a column: `heat=0.5`; may be repeated.
     /// Adds an interval of each output that contains its values for all inputs within
@@ -61,7 +61,7 @@ pub(crate) struct Arguments {
 
 /// A column that explains the outputs of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum With {
+enum ExplanationColumn {
     /// The largest firing strength of a rule, from 0 to 1
     Coverage,
     /// The number of the rule with that strength, from 1
@@ -72,13 +72,13 @@ enum With {
     Error,
 }
 
-impl With {
+impl ExplanationColumn {
     fn name(self) -> &'static str {
         match self {
-            With::Coverage => "coverage",
-            With::Rule => "dominant_rule",
-            With::Clamped => "clamped",
-            With::Error => "error",
+            ExplanationColumn::Coverage => "coverage",
+            ExplanationColumn::Rule => "dominant_rule",
+            ExplanationColumn::Clamped => "clamped",
+            ExplanationColumn::Error => "error",
         }
     }
 }
@@ -91,7 +91,7 @@ struct Plan {
     inputs: Vec<usize>,
     /// The input that each column contains.
     input_of: Vec<Option<usize>>,
-    with: Vec<With>,
+    with: Vec<ExplanationColumn>,
     suffix: String,
     /// Whether each output has an interval, whose ends have columns of their own.
     intervals: Vec<bool>,
@@ -224,8 +224,10 @@ impl Plan {
         }
         for with in &self.with {
             added.extend(match with {
-                With::Coverage | With::Rule => of_outputs(with.name()),
-                With::Clamped | With::Error => vec![with.name().to_owned()],
+                ExplanationColumn::Coverage | ExplanationColumn::Rule => of_outputs(with.name()),
+                ExplanationColumn::Clamped | ExplanationColumn::Error => {
+                    vec![with.name().to_owned()]
+                }
             });
         }
         if let Some(name) = added.iter().find(|name| self.header.column(name).is_some()) {

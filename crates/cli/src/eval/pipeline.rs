@@ -21,7 +21,7 @@ use crate::{
 const WAITING: usize = 2;
 
 /// A block after evaluation.
-type Done = Result<(Block, Tally), Failure>;
+type BlockResult = Result<(Block, Tally), Failure>;
 
 /// Evaluates and writes rows to the end of the table, or while `is_read`.
 ///
@@ -80,7 +80,7 @@ fn read(
     Ok(())
 }
 
-fn evaluate(plan: &Plan, blocks: Receiver<Block>, done: SyncSender<Done>) {
+fn evaluate(plan: &Plan, blocks: Receiver<Block>, done: SyncSender<BlockResult>) {
     let mut evaluator = Evaluator::new(plan);
     for mut block in blocks {
         let evaluated = evaluator.evaluate(&mut block);
@@ -92,7 +92,7 @@ fn evaluate(plan: &Plan, blocks: Receiver<Block>, done: SyncSender<Done>) {
 
 fn write<W: Write + ?Sized>(
     plan: &Plan,
-    threads: Vec<Receiver<Done>>,
+    threads: Vec<Receiver<BlockResult>>,
     spare: &Sender<Block>,
     out: &mut W,
     is_read: impl Fn(&W) -> bool,

@@ -3,7 +3,7 @@
 use csv::ByteRecord;
 use fuzzy::engine::{Enclosure, IntervalOutcome, Outcome, Sequence, State};
 
-use super::{Plan, With, tally::Tally, uncertain};
+use super::{ExplanationColumn, Plan, tally::Tally, uncertain};
 use crate::{
     failure::Failure,
     output::{cell, number_or_cell},
@@ -265,7 +265,7 @@ impl<'p> Evaluator<'p> {
         }
         for with in &self.plan.with {
             match with {
-                With::Coverage => {
+                ExplanationColumn::Coverage => {
                     for outcome in outcomes {
                         let is_known = outcome.state != State::InputNotFinite;
                         let coverage = if is_known {
@@ -276,7 +276,7 @@ impl<'p> Evaluator<'p> {
                         writer.write_field(coverage)?;
                     }
                 }
-                With::Rule => {
+                ExplanationColumn::Rule => {
                     for outcome in outcomes {
                         let rule = outcome
                             .dominant_rule
@@ -284,14 +284,14 @@ impl<'p> Evaluator<'p> {
                         writer.write_field(rule)?;
                     }
                 }
-                With::Clamped => {
+                ExplanationColumn::Clamped => {
                     let is_clamped = outcomes.first().is_some_and(|outcome| outcome.clamped);
                     let inputs = self.clamped(row).filter(|_| is_clamped);
                     let names =
                         inputs.filter_map(|input| self.plan.engine.input_names().nth(input));
                     writer.write_field(cell(&names.collect::<Vec<_>>().join("|")).as_bytes())?;
                 }
-                With::Error => {
+                ExplanationColumn::Error => {
                     let error = self.error(row, outcomes, enclosed.as_deref());
                     writer.write_field(cell(&error).as_bytes())?;
                 }
@@ -342,7 +342,6 @@ impl<'p> Evaluator<'p> {
             _ => format!("no rule fires for `{name}` for some values within the half-widths"),
         });
         unknown
-            .chain(unbounded)
             .chain(silent)
             .chain(partly)
             .collect::<Vec<_>>()

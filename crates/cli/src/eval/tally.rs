@@ -8,14 +8,14 @@ const SHOWN: usize = 20;
 
 /// The number of rows with some property, and the first of them.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Rows {
+pub(super) struct RowCount {
     count: u64,
     first_line: u64,
 }
 
-impl Rows {
+impl RowCount {
     pub(super) fn add(&mut self, line: u64) {
-        self.merge(Rows {
+        self.merge(RowCount {
             count: 1,
             first_line: line,
         });
@@ -30,7 +30,7 @@ impl Rows {
     }
 
     /// Adds rows that come later.
-    pub(super) fn merge(&mut self, later: Rows) {
+    pub(super) fn merge(&mut self, later: RowCount) {
         if self.count == 0 {
             self.first_line = later.first_line;
         }
@@ -41,17 +41,17 @@ impl Rows {
 /// Counts of rows.
 pub(super) struct Tally {
     pub(super) rows: u64,
-    bad: Rows,
+    bad: RowCount,
     /// Whether a row differs from the header in its number of cells.
     pub(super) has_misfit: bool,
     /// The problems of the first bad rows.
     shown: Vec<String>,
     /// Rows with an unknown input.
-    pub(super) unknown: Rows,
+    pub(super) unknown: RowCount,
     /// For each output: rows in which no rule fires for it.
-    pub(super) silent: Vec<Rows>,
+    pub(super) silent: Vec<RowCount>,
     /// For each input: rows in which it is outside its range.
-    pub(super) clamped: Vec<Rows>,
+    pub(super) clamped: Vec<RowCount>,
     /// For each output: its errors against measured values.
     pub(super) errors: Vec<Errors>,
 }
@@ -60,12 +60,12 @@ impl Tally {
     pub(super) fn new(plan: &Plan) -> Tally {
         Tally {
             rows: 0,
-            bad: Rows::default(),
+            bad: RowCount::default(),
             has_misfit: false,
             shown: Vec::new(),
-            unknown: Rows::default(),
-            silent: vec![Rows::default(); plan.engine.output_names().len()],
-            clamped: vec![Rows::default(); plan.engine.input_names().len()],
+            unknown: RowCount::default(),
+            silent: vec![RowCount::default(); plan.engine.output_names().len()],
+            clamped: vec![RowCount::default(); plan.engine.input_names().len()],
             errors: vec![Errors::default(); plan.engine.output_names().len()],
         }
     }
@@ -107,8 +107,8 @@ impl Tally {
         if self.rows == 0 {
             say(&format!("`{}` has a header, but no rows", plan.header.file));
         }
-        let of = |rows: Rows| format!("{} of {} rows", rows.count, self.rows);
-        let first = |rows: Rows| format!("first in line {}", rows.first_line);
+        let of = |rows: RowCount| format!("{} of {} rows", rows.count, self.rows);
+        let first = |rows: RowCount| format!("first in line {}", rows.first_line);
         for bad in &self.shown {
             say(bad);
         }

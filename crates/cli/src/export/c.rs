@@ -250,7 +250,7 @@ fn initialiser(debug: &str) -> String {
     text.trim_end().replace("{ ", "{").replace(" }", "}")
 }
 
-/// Converts a word of a debug form: a number, a code such as `Kind(3)`, or a hedge.
+/// Converts a word of a debug form: a number, a code such as `ShapeKind(3)`, or a hedge.
 fn value(word: &str) -> String {
     if let Some(code) = Hedge::ALL
         .iter()

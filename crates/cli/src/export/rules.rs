@@ -5,7 +5,7 @@ use std::path::Path;
 use flagred::{
     board::{
         Rules,
-        table::{Outcome, Partial, Strongest},
+        table::{Outcome, PartialConjunction, StrongestRule},
     },
     plan,
 };
@@ -125,6 +125,6 @@ fn heading(model: &Model, rules: &Rules<'_>, option: &str, memory: usize) -> Vec
 fn stack_bytes(rules: &Rules<'_>) -> usize {
     let outputs = rules.table.outputs.len();
     rules.numbers() * size_of::<f64>()
-        + rules.partials() * size_of::<Partial>()
-        + outputs * (size_of::<Strongest>() + 2 * size_of::<Outcome>())
+        + rules.partials() * size_of::<PartialConjunction>()
+        + outputs * (size_of::<StrongestRule>() + 2 * size_of::<Outcome>())
 }

@@ -148,16 +148,16 @@ pub(super) fn function(rules: &Rules<'_>, heading: &[String]) -> String {
 #[rustfmt::skip]
 pub fn evaluate(inputs: &[f64; {inputs}]) -> [::fuzzy::table::Outcome; {outputs}] {{
     #[allow(unused_imports)]
-    use ::fuzzy::table::{{Outcome, Partial, Scratch, Strongest, Values}};
+    use ::fuzzy::table::{{Outcome, PartialConjunction, Scratch, StrongestRule, Values}};
     let mut scratch = Scratch {{
         values: &mut [0.0; {}],
         degrees: &mut [0.0; {}],
-        alive: &mut [Partial::NONE; {}],
-        partial: &mut [Partial::NONE; {partial}],
-        next: &mut [Partial::NONE; {partial}],
+        alive: &mut [PartialConjunction::NONE; {}],
+        partial: &mut [PartialConjunction::NONE; {partial}],
+        next: &mut [PartialConjunction::NONE; {partial}],
         stack: &mut [0.0; {}],
         strengths: &mut [0.0; {}],
-        strongest: &mut [Strongest::NONE; {outputs}],
+        strongest: &mut [StrongestRule::NONE; {outputs}],
     }};{of_stages}
     let mut outcomes = [Outcome::UNDEFINED; {outputs}];
     RULES.evaluate(&mut scratch, {values}inputs, &mut outcomes);

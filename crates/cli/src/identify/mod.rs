@@ -9,8 +9,8 @@ use std::{io::Write as _, ops::ControlFlow, path::PathBuf};
 use flagred_tuning::{
     Data, Loss, TuneError,
     identify::{
-        Antecedents, Consequents, Identification, Identified, Judged, MOST_TERMS, check_columns,
-        identify, judge,
+        Antecedents, Consequents, Identification, IdentifyResult, IdentifyValidation, MOST_TERMS,
+        check_columns, cross_validate, identify,
     },
 };
 use fuzzy::diagnostic::suggest;
@@ -107,16 +107,16 @@ pub(crate) struct Arguments {
 }
 
 /// The results for the report.
-struct Outcome {
+struct IdentifyOutcome {
     rows: usize,
     refused: Vec<String>,
     /// The columns that were examined as inputs.
     columns: usize,
     /// Columns without a number.
     without_numbers: Vec<String>,
-    identified: Identified,
+    identified: IdentifyResult,
     /// The cross-validation; `None` if it was not requested.
-    judged: Option<Judged>,
+    validation: Option<IdentifyValidation>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
@@ -162,12 +162,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     let settings = settings(arguments);
     let identified = identify(&names, &arguments.target, &data, &settings).map_err(failed)?;
-    let judged = match arguments.no_validation {
+    let validation = match arguments.no_validation {
         true => None,
         false => {
             let mut watch = |_| ControlFlow::Continue(());
             let folds = arguments.folds;
-            judge(
+            cross_validate(
                 &names,
                 &arguments.target,
                 &data,
@@ -178,13 +178,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             .map_err(failed)?
         }
     };
-    let outcome = Outcome {
+    let outcome = IdentifyOutcome {
         rows: data.len(),
         refused,
         columns: names.len(),
         without_numbers,
         identified,
-        judged,
+        validation,
     };
     output.write(&report::rule_set(arguments, &outcome)?)?;
     let mut out = Stdout::beside(&[&output]);

@@ -2,18 +2,18 @@
 
 use std::io::Write;
 
-use flagred_tuning::identify::Judged;
+use flagred_tuning::identify::IdentifyValidation;
 use fuzzy::{
     drawing::{short, visible},
-    model::Step,
+    model::ProvenanceStep,
 };
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{Arguments, Outcome};
+use super::{Arguments, IdentifyOutcome};
 use crate::{
     failure::Failure,
-    left_out::{self, OfClasses, OfInterval, divided, figure},
+    left_out::{self, ConfusionDocument, IntervalDocument, divided, figure},
     provenance,
 };
 
@@ -21,22 +21,28 @@ use crate::{
 const SHOWN: usize = 12;
 
 /// The rule set with a provenance step for this command.
-pub(super) fn rule_set(arguments: &Arguments, outcome: &Outcome) -> Result<String, Failure> {
-    let judged = outcome.judged.as_ref().map_or_else(String::new, |judged| {
-        format!(
-            "; cross-validation error (RMS, {} folds): {}; of a linear regression: {}",
-            judged.folds,
-            short(judged.identified.value),
-            short(judged.linear.value)
-        )
-    });
-    let step = Step {
+pub(super) fn rule_set(
+    arguments: &Arguments,
+    outcome: &IdentifyOutcome,
+) -> Result<String, Failure> {
+    let validation = outcome
+        .validation
+        .as_ref()
+        .map_or_else(String::new, |validation| {
+            format!(
+                "; cross-validation error (RMS, {} folds): {}; of a linear regression: {}",
+                validation.folds,
+                short(validation.identified.value),
+                short(validation.linear.value)
+            )
+        });
+    let step = ProvenanceStep {
         command: "flagred identify".into(),
         data: provenance::data(&arguments.data)?,
         rows: Some(outcome.rows as u64),
         seed: Some(arguments.seed),
-        note: Some(format!("from {} columns{judged}", outcome.columns)),
-        ..Step::default()
+        note: Some(format!("from {} columns{validation}", outcome.columns)),
+        ..ProvenanceStep::default()
     };
     provenance::rule_set("", outcome.identified.model.clone(), step)
 }
@@ -44,7 +50,7 @@ pub(super) fn rule_set(arguments: &Arguments, outcome: &Outcome) -> Result<Strin
 pub(super) fn words(
     out: &mut dyn Write,
     arguments: &Arguments,
-    outcome: &Outcome,
+    outcome: &IdentifyOutcome,
 ) -> std::io::Result<()> {
     left_out::rows(out, outcome.rows, &outcome.refused)?;
     writeln!(out, "columns     {} examined", outcome.columns)?;
@@ -85,39 +91,43 @@ pub(super) fn words(
         identified.model.rules.len(),
         if inputs == 1 { "" } else { "s" }
     )?;
-    if let Some(judged) = &outcome.judged {
-        worth(out, arguments, judged)?;
+    if let Some(validation) = &outcome.validation {
+        worth(out, arguments, validation)?;
     }
     Ok(())
 }
 
 /// Writes the cross-validation error of the whole search.
-fn worth(out: &mut dyn Write, arguments: &Arguments, judged: &Judged) -> std::io::Result<()> {
+fn worth(
+    out: &mut dyn Write,
+    arguments: &Arguments,
+    validation: &IdentifyValidation,
+) -> std::io::Result<()> {
     let parts = divided(arguments.group_by.as_ref());
     writeln!(
         out,
         "left out    {} cross-validation error (RMS) of the whole search ({} folds of {parts}, 95 % intervals)",
-        figure(&judged.identified),
-        judged.folds
+        figure(&validation.identified),
+        validation.folds
     )?;
-    let ratio = match judged.ratio {
+    let ratio = match validation.ratio {
         ratio if ratio.value < 100.0 => format!("{} of it", figure(&ratio)),
         _ => "over 100 times as large".to_owned(),
     };
     writeln!(
         out,
         "            {} of a linear regression on all columns; the first is {ratio}",
-        figure(&judged.linear)
+        figure(&validation.linear)
     )?;
-    writeln!(out, "            {} of the mean", figure(&judged.mean))?;
-    if let Some(confusion) = &judged.confusion {
+    writeln!(out, "            {} of the mean", figure(&validation.mean))?;
+    if let Some(confusion) = &validation.confusion {
         left_out::confusion(out, confusion, |_| None)?;
     }
-    if judged.without_value > 0 {
+    if validation.without_value > 0 {
         writeln!(
             out,
             "            {} rows without a value: no rule fires there; the mean is used instead",
-            judged.without_value
+            validation.without_value
         )?;
     }
     Ok(())
@@ -131,10 +141,10 @@ const SCHEMA: &str = "flagred.identify/1";
 pub(crate) struct Document<'a> {
     #[schemars(extend("const" = SCHEMA))]
     schema: &'static str,
-    rows: Rows<'a>,
+    rows: RowsDocument<'a>,
     columns: Columns<'a>,
     /// The steps of the search.
-    steps: Vec<OfStep<'a>>,
+    steps: Vec<IdentifyStepDocument<'a>>,
     /// The number of rules.
     rules: usize,
     /// The number of combinations of terms without a rule.
@@ -144,7 +154,7 @@ pub(crate) struct Document<'a> {
 }
 
 #[derive(Serialize, JsonSchema)]
-struct Rows<'a> {
+struct RowsDocument<'a> {
     /// The number of rows that were used.
     used: usize,
     /// The number of rows that cannot be used.
@@ -164,7 +174,7 @@ struct Columns<'a> {
 }
 
 #[derive(Serialize, JsonSchema)]
-struct OfStep<'a> {
+struct IdentifyStepDocument<'a> {
     /// The input that was added, or that got another term.
     input: &'a str,
     /// The number of terms of this input after the step, or the number of clusters.
@@ -180,22 +190,22 @@ struct Validation {
     /// The number of rows for which no rule fires; the mean of the other rows is used instead.
     rows_without_value: usize,
     /// The cross-validation error (RMS) of the whole search.
-    identified: OfInterval,
+    identified: IntervalDocument,
     /// The cross-validation error (RMS) of a linear regression on all columns.
-    linear: OfInterval,
+    linear: IntervalDocument,
     /// The cross-validation error (RMS) of the mean of the training rows.
-    mean: OfInterval,
+    mean: IntervalDocument,
     /// `identified` divided by `linear`.
-    ratio: OfInterval,
+    ratio: IntervalDocument,
     /// The confusion matrix of the cross-validation, if the target has 2 to 10 whole numbers; else
     /// null.
-    confusion: Option<OfClasses>,
+    confusion: Option<ConfusionDocument>,
 }
 
 impl<'a> Document<'a> {
-    pub(super) fn new(outcome: &'a Outcome) -> Document<'a> {
+    pub(super) fn new(outcome: &'a IdentifyOutcome) -> Document<'a> {
         let identified = &outcome.identified;
-        let steps = identified.steps.iter().map(|step| OfStep {
+        let steps = identified.steps.iter().map(|step| IdentifyStepDocument {
             input: &step.input,
             terms: step.terms,
             left_out: step.left_out,
@@ -203,7 +213,7 @@ impl<'a> Document<'a> {
         let inputs = identified.model.inputs.iter();
         Document {
             schema: SCHEMA,
-            rows: Rows {
+            rows: RowsDocument {
                 used: outcome.rows,
                 refused: outcome.refused.len(),
                 reasons: &outcome.refused,
@@ -216,14 +226,14 @@ impl<'a> Document<'a> {
             steps: steps.collect(),
             rules: identified.model.rules.len(),
             combinations_without_rows: identified.without_rows,
-            validation: outcome.judged.as_ref().map(|judged| Validation {
-                parts: judged.folds,
-                rows_without_value: judged.without_value,
-                identified: (&judged.identified).into(),
-                linear: (&judged.linear).into(),
-                mean: (&judged.mean).into(),
-                ratio: (&judged.ratio).into(),
-                confusion: judged.confusion.as_ref().map(Into::into),
+            validation: outcome.validation.as_ref().map(|validation| Validation {
+                parts: validation.folds,
+                rows_without_value: validation.without_value,
+                identified: (&validation.identified).into(),
+                linear: (&validation.linear).into(),
+                mean: (&validation.mean).into(),
+                ratio: (&validation.ratio).into(),
+                confusion: validation.confusion.as_ref().map(Into::into),
             }),
         }
     }

@@ -14,7 +14,7 @@ use flagred_evaluation::learning::{
 use fuzzy::{
     Engine, Model,
     check::{self, Counterexample},
-    learn::{Direction, LearnError, Learned, Learner, Resolution, Settings, Unchained},
+    learn::{Direction, LastStage, LearnError, LearnResult, Learner, Resolution, Settings},
     map::{DecisionMap, Grid},
     model::{Aggregation, Conjunction, Implication},
 };
@@ -29,7 +29,7 @@ use crate::{
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    rows: rows::FromRows,
+    rows: rows::DerivationArguments,
 
     /// How to choose the consequent of rows with the same terms
     #[arg(long, value_enum, default_value = "strongest", value_name = "HOW")]
@@ -67,8 +67,8 @@ enum Resolve {
 }
 
 /// The results for the report.
-struct Outcome {
-    learned: Learned,
+struct LearnOutcome {
+    learned: LearnResult,
     /// The rule set with the learned rules.
     model: Model,
     kept: usize,
@@ -89,7 +89,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let source = rule_set::read(&arguments.rows.rewrite.model)?;
     let whole = &rule_set::document(&source, &name)?.model;
     let wrong = |error: LearnError| Failure::usage(format!("`{name}`: {error}")).help(error.help());
-    let chain = Unchained::new(whole).map_err(wrong)?;
+    let chain = LastStage::new(whole).map_err(wrong)?;
     let mut model = chain.model().clone();
     if !arguments.keep_rules {
         model.rules.clear();
@@ -134,7 +134,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let coverage = coverage(&learned.model, &gap)?;
     let whole = chain.joined(&learned.model);
     let counterexamples = counterexamples(&claims, &whole)?;
-    let outcome = Outcome {
+    let outcome = LearnOutcome {
         model: whole,
         kept: model.rules.len(),
         refused_count: refused.len(),
@@ -200,7 +200,7 @@ fn counterexamples(
 
 /// Returns advice for making the output monotone, if there is any: with inference by product and
 /// sum, monotone rules give a monotone output if every combination of terms has a rule.
-fn monotone_help(outcome: &Outcome) -> Option<&'static str> {
+fn monotone_help(outcome: &LearnOutcome) -> Option<&'static str> {
     let mut model = outcome.model.clone();
     model.operators.and = Conjunction::Product;
     model.operators.implication = Implication::Product;

@@ -4,11 +4,11 @@ use std::io::Write;
 
 use flagred::gap::GapMethod;
 use flagred_evaluation::learning::{Errors, MethodErrors};
-use fuzzy::{check::Counterexample, drawing::visible, model::Step};
+use fuzzy::{check::Counterexample, drawing::visible, model::ProvenanceStep};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{Arguments, Outcome};
+use super::{Arguments, LearnOutcome};
 use crate::{failure::Failure, provenance, rows::word};
 
 /// Maximum number of antecedents without a rule that are listed.
@@ -17,7 +17,7 @@ const SHOWN: usize = 12;
 /// The rule set with a provenance step for this command. Degrees are rounded to six digits for readability.
 pub(super) fn rule_set(
     arguments: &Arguments,
-    outcome: &Outcome,
+    outcome: &LearnOutcome,
     model_text: &str,
 ) -> Result<String, Failure> {
     let learned = &outcome.learned;
@@ -29,7 +29,7 @@ pub(super) fn rule_set(
             beaten.degree = round(beaten.degree);
         }
     }
-    let step = Step {
+    let step = ProvenanceStep {
         command: "flagred learn".into(),
         data: provenance::data(&arguments.rows.data)?,
         rows: Some(learned.samples),
@@ -39,7 +39,7 @@ pub(super) fn rule_set(
             learned.model.rules.len() - outcome.kept,
             learned.completed,
         )),
-        ..Step::default()
+        ..ProvenanceStep::default()
     };
     provenance::rule_set(model_text, model, step)
 }
@@ -47,7 +47,7 @@ pub(super) fn rule_set(
 pub(super) fn words(
     out: &mut dyn Write,
     arguments: &Arguments,
-    outcome: &Outcome,
+    outcome: &LearnOutcome,
 ) -> std::io::Result<()> {
     let learned = &outcome.learned;
     let rules = learned.model.rules.len() - outcome.kept;
@@ -167,7 +167,7 @@ const SCHEMA: &str = "flagred.learn/1";
 pub(crate) struct Document<'a> {
     #[schemars(extend("const" = SCHEMA))]
     schema: &'static str,
-    rows: Rows<'a>,
+    rows: RowsDocument<'a>,
     /// The method that resolves conflicts.
     #[schemars(extend("enum" = ["strongest", "heaviest", "mean"]))]
     resolution: String,
@@ -176,7 +176,7 @@ pub(crate) struct Document<'a> {
     conflicts: u64,
     /// The number of antecedents with too few rows or too little confidence.
     left_out: u64,
-    missing: Missing,
+    missing: MissingDocument,
     /// The check of `--rising` and `--falling`; null if neither was given.
     monotone: Option<Monotone<'a>>,
     /// The coverage of the map; null if it has more than 2,000,000 cells.
@@ -188,7 +188,7 @@ pub(crate) struct Document<'a> {
 }
 
 #[derive(Serialize, JsonSchema)]
-struct Rows<'a> {
+struct RowsDocument<'a> {
     /// The number of rows that were used.
     used: u64,
     /// The number of rows that cannot be used.
@@ -208,7 +208,7 @@ struct Rules {
 }
 
 #[derive(Serialize, JsonSchema)]
-struct Missing {
+struct MissingDocument {
     /// The number of antecedents without a rule.
     count: u64,
     /// The first of these antecedents.
@@ -243,11 +243,11 @@ struct GapMethods<'a> {
     /// methods.
     with_the_rule: &'a Errors,
     /// The errors of each method without the rule.
-    methods: Vec<OfMethod<'a>>,
+    methods: Vec<MethodDocument<'a>>,
 }
 
 #[derive(Serialize, JsonSchema)]
-struct OfMethod<'a> {
+struct MethodDocument<'a> {
     /// The name of the method.
     method: &'static str,
     #[serde(flatten)]
@@ -255,12 +255,12 @@ struct OfMethod<'a> {
 }
 
 impl<'a> Document<'a> {
-    pub(super) fn new(arguments: &Arguments, outcome: &'a Outcome) -> Document<'a> {
+    pub(super) fn new(arguments: &Arguments, outcome: &'a LearnOutcome) -> Document<'a> {
         let learned = &outcome.learned;
         let missing = learned.missing_antecedents.iter();
         Document {
             schema: SCHEMA,
-            rows: Rows {
+            rows: RowsDocument {
                 used: learned.samples,
                 refused: outcome.refused_count,
                 reasons: &outcome.refused,
@@ -273,7 +273,7 @@ impl<'a> Document<'a> {
             },
             conflicts: learned.conflicts,
             left_out: learned.left_out,
-            missing: Missing {
+            missing: MissingDocument {
                 count: learned.missing,
                 antecedents: missing.map(ToString::to_string).collect(),
             },
@@ -294,7 +294,7 @@ impl<'a> Document<'a> {
                 methods: gaps
                     .methods
                     .iter()
-                    .map(|(method, errors)| OfMethod {
+                    .map(|(method, errors)| MethodDocument {
                         method: method.name(),
                         errors,
                     })

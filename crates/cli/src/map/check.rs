@@ -16,7 +16,7 @@ use crate::{
 const NEGLIGIBLE: f64 = 1e-9;
 
 /// The row with the largest difference.
-struct Worst {
+struct LargestDifference {
     line: u64,
     point: Vec<f64>,
     before: Option<f64>,
@@ -29,9 +29,7 @@ pub(super) fn against(path: &Path, evaluated: &MapSource) -> Result<Exit, Failur
     let names: Vec<&str> = evaluated.engine.input_names().collect();
     let help = "`flagred map --csv` writes such a table";
     let columns = names.iter().map(|name| table.header.require(name, help));
-    // `map` has no options for the columns of a table.
-    let columns: Result<Vec<usize>, Failure> = columns.collect();
-    let columns = columns.map_err(|failure| failure.help(help))?;
+    let columns: Vec<usize> = columns.collect::<Result<_, _>>()?;
     let outputs = evaluated.engine.output_names().enumerate();
     let outputs = outputs.filter_map(|(output, name)| {
         let column = table.header.column(name)?;
@@ -89,7 +87,7 @@ fn differences(
     mapped: &Mapped<'_>,
     inputs: &[usize],
     column: usize,
-) -> Result<(usize, Option<Worst>), Failure> {
+) -> Result<(usize, Option<LargestDifference>), Failure> {
     let bad = |row: usize, column: usize| {
         let problem = Cell::problem(table.text(row, column).as_bytes());
         let (file, line) = (&table.header.file, table.line(row));
@@ -122,7 +120,7 @@ fn differences(
         differ += 1;
         if difference > most {
             most = difference;
-            worst = Some(Worst {
+            worst = Some(LargestDifference {
                 line: table.line(row),
                 point,
                 before,

@@ -31,10 +31,10 @@ impl Replace {
 /// The destination of an output.
 pub(crate) struct Output {
     named: PathBuf,
-    place: Place,
+    destination: Destination,
 }
 
-enum Place {
+enum Destination {
     Stdout,
     /// A device, a FIFO or a socket: it is written to and never replaced.
     Special,
@@ -55,12 +55,12 @@ enum Identity {
 /// The files that a call reads and writes.
 #[derive(Default)]
 pub(crate) struct Files {
-    known: Vec<ClaimedFile>,
+    known: Vec<FileUse>,
     /// Whether an output is `-`.
     stdout_is_taken: bool,
 }
 
-struct ClaimedFile {
+struct FileUse {
     identity: Identity,
     /// The name of the file for messages.
     shown: String,
@@ -87,7 +87,7 @@ impl Files {
                     .ok()
                     .and_then(|metadata| identity(input, &metadata)),
             };
-            files.known.extend(identity.map(|identity| ClaimedFile {
+            files.known.extend(identity.map(|identity| FileUse {
                 identity,
                 shown: format!("`{}`", input.display()),
                 role: "an input",
@@ -106,9 +106,9 @@ impl Files {
     /// The output is an input or another output, exists and must not be replaced, or cannot be written.
     pub(crate) fn output(&mut self, named: &Path, replace: Replace) -> Result<Output, Failure> {
         let shown = format!("`{}`", named.display());
-        let output = |place| Output {
+        let output = |destination| Output {
             named: named.to_owned(),
-            place,
+            destination,
         };
         if is_standard(named) {
             if std::mem::replace(&mut self.stdout_is_taken, true) {
@@ -116,7 +116,7 @@ impl Files {
                     .help("name a file for one of them"));
             }
             // Standard output was compared with the inputs at the start.
-            return Ok(output(Place::Stdout));
+            return Ok(output(Destination::Stdout));
         }
         let failed = |error: &io::Error| cannot_write(named, error);
         let found = match fs::metadata(named) {
@@ -133,13 +133,13 @@ impl Files {
             self.claim(same, shown.clone())?;
         }
         let Some(found) = found else {
-            return Ok(output(Place::File(target, replace)));
+            return Ok(output(Destination::File(target, replace)));
         };
         if found.is_dir() {
             return Err(Failure::usage(format!("{shown} is a folder")).help("name a file in it"));
         }
         if !found.is_file() {
-            return Ok(output(Place::Special));
+            return Ok(output(Destination::Special));
         }
         if replace == Replace::No {
             return Err(exists(named));
@@ -147,7 +147,7 @@ impl Files {
         // A file without write permission is not replaced.
         let opened = OpenOptions::new().write(true).open(&target);
         opened.map_err(|error| failed(&error))?;
-        Ok(output(Place::File(target, replace)))
+        Ok(output(Destination::File(target, replace)))
     }
 
     /// As [`Files::output`] for an optional output, which replaces an existing file.
@@ -158,7 +158,7 @@ impl Files {
 
     fn claim(&mut self, identity: Identity, shown: String) -> Result<(), Failure> {
         if let Some(other) = self.known.iter().find(|known| known.identity == identity) {
-            let ClaimedFile {
+            let FileUse {
                 shown: other, role, ..
             } = other;
             let message = match shown == *other {
@@ -169,7 +169,7 @@ impl Files {
             };
             return Err(Failure::usage(message).help("name another file to write"));
         }
-        self.known.push(ClaimedFile {
+        self.known.push(FileUse {
             identity,
             shown,
             role: "another output",
@@ -180,7 +180,7 @@ impl Files {
 
 impl Output {
     pub(crate) fn is_stdout(&self) -> bool {
-        matches!(self.place, Place::Stdout)
+        matches!(self.destination, Destination::Stdout)
     }
 
     pub(crate) fn write(&self, text: &str) -> Result<(), Failure> {
@@ -193,13 +193,13 @@ impl Output {
         fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<(), Failure> {
         let failed = |error: io::Error| cannot_write(&self.named, &error);
-        match &self.place {
-            Place::Stdout => {
+        match &self.destination {
+            Destination::Stdout => {
                 let mut out = Stdout::data();
                 fill(&mut out)?;
                 out.finish()
             }
-            Place::Special => {
+            Destination::Special => {
                 let written = open_special(&self.named).and_then(|special| {
                     let mut out = BufWriter::new(special);
                     fill(&mut out)?;
@@ -211,7 +211,7 @@ impl Output {
                     written => written.map_err(failed),
                 }
             }
-            Place::File(target, replace) => {
+            Destination::File(target, replace) => {
                 write_file(target, *replace, fill).map_err(|error| match error.kind() {
                     ErrorKind::AlreadyExists => exists(&self.named),
                     _ => failed(error),
@@ -227,10 +227,10 @@ impl Output {
 ///
 /// The first failure.
 pub(crate) fn write_all(mut texts: Vec<(&Output, String)>) -> Result<(), Failure> {
-    texts.sort_by_key(|(output, _)| match output.place {
-        Place::File(..) => 0,
-        Place::Special => 1,
-        Place::Stdout => 2,
+    texts.sort_by_key(|(output, _)| match output.destination {
+        Destination::File(..) => 0,
+        Destination::Special => 1,
+        Destination::Stdout => 2,
     });
     let mut failed = None;
     for (output, text) in texts {

@@ -33,7 +33,7 @@ pub(super) struct Content {
 }
 
 /// The result of saving a text.
-pub(super) enum Saved {
+pub(super) enum SaveResult {
     /// The text was saved; this is its tag.
     Yes(String),
     /// The file was changed meanwhile, by another program.
@@ -106,13 +106,13 @@ impl EditedFile {
     }
 
     /// Replaces the file with a text if its current content has the expected tag.
-    pub(super) fn save(&self, text: &str, expected: &str) -> Result<Saved, Failure> {
+    pub(super) fn save(&self, text: &str, expected: &str) -> Result<SaveResult, Failure> {
         if self.read()?.tag != expected {
-            return Ok(Saved::Changed);
+            return Ok(SaveResult::Changed);
         }
         let mut files = Files::reading::<PathBuf>([])?;
         files.output(&self.path, Replace::Yes)?.write(text)?;
-        Ok(Saved::Yes(tag(text)))
+        Ok(SaveResult::Yes(tag(text)))
     }
 }
 

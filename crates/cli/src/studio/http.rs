@@ -187,15 +187,15 @@ impl Response<'_> {
 }
 
 /// A connection with a deadline, however slowly the other side sends or reads.
-pub(super) struct Timed<'s> {
+pub(super) struct DeadlineStream<'s> {
     stream: &'s TcpStream,
     end: Instant,
 }
 
-impl<'s> Timed<'s> {
-    fn new(stream: &'s TcpStream, patience: Duration) -> Timed<'s> {
+impl<'s> DeadlineStream<'s> {
+    fn new(stream: &'s TcpStream, patience: Duration) -> DeadlineStream<'s> {
         let end = Instant::now() + patience;
-        Timed { stream, end }
+        DeadlineStream { stream, end }
     }
 
     fn left(&self) -> io::Result<Duration> {
@@ -207,14 +207,14 @@ impl<'s> Timed<'s> {
     }
 }
 
-impl Read for Timed<'_> {
+impl Read for DeadlineStream<'_> {
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
         self.stream.set_read_timeout(Some(self.left()?))?;
         self.stream.read(bytes)
     }
 }
 
-impl Write for Timed<'_> {
+impl Write for DeadlineStream<'_> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.stream.set_write_timeout(Some(self.left()?))?;
         self.stream.write(bytes)
@@ -228,15 +228,15 @@ impl Write for Timed<'_> {
 /// Answers the request on a connection, and closes it. HEAD is answered as GET without the body.
 pub(super) fn serve<'a>(
     stream: &TcpStream,
-    respond: impl FnOnce(&mut Request<&mut Timed<'_>>) -> Response<'a>,
+    respond: impl FnOnce(&mut Request<&mut DeadlineStream<'_>>) -> Response<'a>,
 ) -> io::Result<()> {
-    let mut reading = Timed::new(stream, PATIENCE);
+    let mut reading = DeadlineStream::new(stream, PATIENCE);
     let (response, with_body) = match Request::read(&mut reading) {
         Ok(None) => return Ok(()),
         Ok(Some(mut request)) => (respond(&mut request), request.method != "HEAD"),
         Err(refusal) => (refusal.into(), true),
     };
-    Timed::new(stream, PATIENCE_TO_ANSWER).write_all(&response.bytes(with_body))?;
+    DeadlineStream::new(stream, PATIENCE_TO_ANSWER).write_all(&response.bytes(with_body))?;
     stream.shutdown(Shutdown::Write)?;
     // Closing the connection with unread input would reset it, and the answer would be lost.
     reading.end = reading.end.min(Instant::now() + Duration::from_secs(1));

@@ -4,7 +4,7 @@ mod file;
 mod http;
 mod page;
 mod server;
-mod strangers;
+mod unauthenticated;
 
 use std::{
     io::{self, Write},
@@ -28,7 +28,7 @@ use crate::{
 };
 use file::EditedFile;
 use server::Server;
-use strangers::Strangers;
+use unauthenticated::UnauthenticatedConnections;
 
 /// Maximum number of open connections.
 const CONNECTIONS: usize = 256;
@@ -117,7 +117,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 /// Answers each connection in its own thread, since browsers open some before they use them.
 fn accept(listener: &TcpListener, server: &Arc<Server>) {
     let open = Arc::new(AtomicUsize::new(0));
-    let strangers = Arc::new(Strangers::default());
+    let unauthenticated = Arc::new(UnauthenticatedConnections::default());
     for connection in listener.incoming() {
         let Ok(stream) = connection else {
             // The error may be temporary, such as too many open files.
@@ -129,17 +129,17 @@ fn accept(listener: &TcpListener, server: &Arc<Server>) {
             continue;
         }
         let (server, open) = (Arc::clone(server), Arc::clone(&open));
-        let strangers = Arc::clone(&strangers);
-        let number = strangers.admit(&stream);
+        let unauthenticated = Arc::clone(&unauthenticated);
+        let number = unauthenticated.admit(&stream);
         thread::spawn(move || {
             // The error of a failed connection cannot be reported to anybody.
             let _ = http::serve(&stream, |request| {
                 if server.is_for_the_user(request) {
-                    strangers.forget(number);
+                    unauthenticated.forget(number);
                 }
                 server.respond(request)
             });
-            strangers.forget(number);
+            unauthenticated.forget(number);
             open.fetch_sub(1, Ordering::Relaxed);
         });
     }

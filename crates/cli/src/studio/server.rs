@@ -19,7 +19,7 @@ use fuzzy::yaml::LARGEST_BYTES;
 use percent_encoding::{NON_ALPHANUMERIC, utf8_percent_encode};
 
 use super::{
-    file::{EditedFile, Saved},
+    file::{EditedFile, SaveResult},
     http::{Refusal, Request, Response, Status},
     page::Page,
 };
@@ -198,12 +198,12 @@ impl Server {
         let text = request.body(LARGEST_BYTES)?;
         let _saving = self.saving.lock().unwrap_or_else(PoisonError::into_inner);
         match file.save(&text, &expected).map_err(failed)? {
-            Saved::Yes(tag) => Ok(Response {
+            SaveResult::Yes(tag) => Ok(Response {
                 status: Status::NO_CONTENT,
                 headers: vec![("ETag", tag)],
                 body: Cow::Borrowed(""),
             }),
-            Saved::Changed => {
+            SaveResult::Changed => {
                 let words = format!("`{}` was changed on disk meanwhile", file.name());
                 Err(Status::PRECONDITION_FAILED.says(&words))
             }

@@ -13,7 +13,7 @@ pub(super) fn not_a_table(start: &[u8], file: &str) -> Option<Failure> {
         return is("text in UTF-16", "save it as UTF-8");
     }
     match flagred_flightlog::kind_of(start) {
-        Some(flagred_flightlog::Kind::LOG) => {
+        Some(flagred_flightlog::FileKind::LOG) => {
             let help = format!(
                 "`flagred dataset {file} --profile flagred -o rows.csv` makes a table of flights"
             );

@@ -18,7 +18,7 @@ use std::{
 use clap::ValueEnum;
 use flagred_authoring::provenance::fingerprint;
 use flagred_tuning::{
-    CurvePoint, Data, Loss, Moved, Progress, Settings, TuneError, Tuned, Validation,
+    ChangedNumber, CurvePoint, Data, Loss, Progress, Settings, TuneError, TuneResult, Validation,
     cross_validate, learning_curve, tune,
 };
 use fuzzy::{
@@ -37,7 +37,7 @@ use crate::{
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    rows: rows::FromRows,
+    rows: rows::DerivationArguments,
 
     /// Loss to minimise
     #[arg(long, value_enum, default_value = "squared", value_name = "LOSS")]
@@ -130,10 +130,10 @@ impl Arguments {
 }
 
 /// The results for the report.
-struct Outcome {
+struct TuneOutcome {
     rows: usize,
     refused: Vec<String>,
-    tuned: Tuned,
+    tuned: TuneResult,
     /// `None` if not requested or interrupted.
     validation: Option<Validation>,
     /// `None` if not requested or interrupted.
@@ -160,7 +160,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let flag = Arc::clone(&stop);
     ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))
         .map_err(|error| Failure::unreadable(format!("interrupts cannot be caught: {error}")))?;
-    let mut watch = Watch::new(arguments, stop, checkpoint.as_ref());
+    let mut watch = SearchObserver::new(arguments, stop, checkpoint.as_ref());
     let tuned = tune(begun, &data, &settings, &mut |progress| {
         watch.step(progress, None)
     });
@@ -184,7 +184,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         _ => None,
     };
     watch.bar.finish_and_clear();
-    let outcome = Outcome {
+    let outcome = TuneOutcome {
         rows: data.len(),
         refused,
         tuned,
@@ -272,7 +272,7 @@ fn resumed(
     let fixed = resumed
         .as_ref()
         .and_then(|resumed| flagred_tuning::moved_although_fixed(model, resumed, settings));
-    if let Some(Moved {
+    if let Some(ChangedNumber {
         of,
         name,
         before,
@@ -332,7 +332,7 @@ fn failure(name: &str, model: &Model, error: &TuneError) -> Failure {
 }
 
 /// Observes a search: shows its progress, writes checkpoints, and stops it if the user interrupts.
-struct Watch<'a> {
+struct SearchObserver<'a> {
     stop: Arc<AtomicBool>,
     bar: ProgressBar,
     starts: u32,
@@ -343,12 +343,12 @@ struct Watch<'a> {
     is_refused: bool,
 }
 
-impl<'a> Watch<'a> {
+impl<'a> SearchObserver<'a> {
     fn new(
         arguments: &Arguments,
         stop: Arc<AtomicBool>,
         checkpoint: Option<&'a Output>,
-    ) -> Watch<'a> {
+    ) -> SearchObserver<'a> {
         let parts = if arguments.rows.no_validation {
             1
         } else {
@@ -360,7 +360,7 @@ impl<'a> Watch<'a> {
             (true, Ok(style)) => ProgressBar::new(u64::from(steps * parts)).with_style(style),
             _ => ProgressBar::hidden(),
         };
-        Watch {
+        SearchObserver {
             stop,
             bar,
             starts: arguments.starts,

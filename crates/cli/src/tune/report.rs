@@ -2,18 +2,18 @@
 
 use std::io::Write;
 
-use flagred_tuning::{Bin, Moved};
+use flagred_tuning::{Bin, ChangedNumber};
 use fuzzy::{
     drawing::{short, visible},
-    model::{LossChange, Step, Term},
+    model::{LossChange, ProvenanceStep, Term},
 };
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{Arguments, LossName, Outcome};
+use super::{Arguments, LossName, TuneOutcome};
 use crate::{
     failure::Failure,
-    left_out::{self, OfClasses, OfInterval, divided, figure},
+    left_out::{self, ConfusionDocument, IntervalDocument, divided, figure},
     provenance,
     rows::word,
 };
@@ -29,7 +29,7 @@ fn loss(arguments: &Arguments) -> &'static str {
 /// The rule set with a provenance step for this command.
 pub(super) fn rule_set(
     arguments: &Arguments,
-    outcome: &Outcome,
+    outcome: &TuneOutcome,
     model_text: &str,
 ) -> Result<String, Failure> {
     let tuned = &outcome.tuned;
@@ -41,7 +41,7 @@ pub(super) fn rule_set(
             short(validation.after.value)
         )
     });
-    let step = Step {
+    let step = ProvenanceStep {
         command: "flagred tune".into(),
         data: provenance::data(&arguments.rows.data)?,
         rows: Some(outcome.rows as u64),
@@ -53,7 +53,7 @@ pub(super) fn rule_set(
         }),
         moved: tuned.moved.iter().map(moved).collect(),
         note: left_out,
-        ..Step::default()
+        ..ProvenanceStep::default()
     };
     provenance::rule_set(model_text, tuned.model.clone(), step)
 }
@@ -64,7 +64,7 @@ fn rounded(loss: f64) -> f64 {
 }
 
 /// Describes a moved number: `heat.warm peak from 20 to 22.5`.
-fn moved(moved: &Moved) -> String {
+fn moved(moved: &ChangedNumber) -> String {
     let [before, after] = [moved.before, moved.after].map(short);
     format!("{} {} from {before} to {after}", moved.of, moved.name)
 }
@@ -72,7 +72,7 @@ fn moved(moved: &Moved) -> String {
 pub(super) fn words(
     out: &mut dyn Write,
     arguments: &Arguments,
-    outcome: &Outcome,
+    outcome: &TuneOutcome,
 ) -> std::io::Result<()> {
     let tuned = &outcome.tuned;
     left_out::rows(out, outcome.rows, &outcome.refused)?;
@@ -156,7 +156,7 @@ pub(super) fn words(
         .unwrap_or(0);
     for (i, moved) in tuned.moved.iter().enumerate() {
         let title = if i == 0 { "moved" } else { "" };
-        let Moved {
+        let ChangedNumber {
             of,
             name,
             before,
@@ -202,7 +202,7 @@ const SCHEMA: &str = "flagred.tune/1";
 pub(crate) struct Document<'a> {
     #[schemars(extend("const" = SCHEMA))]
     schema: &'static str,
-    rows: Rows<'a>,
+    rows: RowsDocument<'a>,
     /// `squared`, `log` or `ranking`.
     #[schemars(extend("enum" = ["squared", "log", "ranking"]))]
     loss: String,
@@ -216,18 +216,18 @@ pub(crate) struct Document<'a> {
     /// Whether the search began with a checkpoint.
     from_checkpoint: bool,
     /// The cross-validation; null if it was not requested.
-    validation: Option<OfValidation>,
+    validation: Option<ValidationDocument>,
     /// The learning curve; null if it was not requested.
-    learning_curve: Option<Vec<OfPoint>>,
+    learning_curve: Option<Vec<CurvePointDocument>>,
     /// The numbers that tuning changed.
-    moved: Vec<OfNumber<'a>>,
+    moved: Vec<ChangedNumberDocument<'a>>,
     /// Constants, as `variable.term`, that are at an end of the range and would reduce the loss
     /// beyond it.
     at_bounds: &'a [String],
 }
 
 #[derive(Serialize, JsonSchema)]
-struct Rows<'a> {
+struct RowsDocument<'a> {
     /// The number of rows that were used.
     used: usize,
     /// The number of rows for which no rule fires; they count as the middle of the range.
@@ -239,24 +239,24 @@ struct Rows<'a> {
 }
 
 #[derive(Serialize, JsonSchema)]
-struct OfValidation {
+struct ValidationDocument {
     /// The number of cross-validation folds.
     parts: usize,
     /// The cross-validated loss before tuning.
-    before: OfInterval,
+    before: IntervalDocument,
     /// The cross-validated loss after tuning.
-    after: OfInterval,
+    after: IntervalDocument,
     /// The reduction of the loss.
-    gain: OfInterval,
+    gain: IntervalDocument,
     /// The cross-validated predictions in ten bins, if the outcomes are 0 and 1; else empty.
-    reliability: Vec<OfBin>,
+    reliability: Vec<BinDocument>,
     /// The confusion matrix of the cross-validation, if the column of the output has 2 to 10 whole
     /// numbers; else null.
-    confusion: Option<OfClasses>,
+    confusion: Option<ConfusionDocument>,
 }
 
 #[derive(Serialize, JsonSchema)]
-struct OfBin {
+struct BinDocument {
     /// The number of rows.
     rows: usize,
     /// The mean of the predictions, as positions in the range of the output from 0 to 1.
@@ -266,7 +266,7 @@ struct OfBin {
 }
 
 #[derive(Serialize, JsonSchema)]
-struct OfPoint {
+struct CurvePointDocument {
     /// The share of the training rows or groups that was used.
     share: f64,
     /// The cross-validated loss.
@@ -274,7 +274,7 @@ struct OfPoint {
 }
 
 #[derive(Serialize, JsonSchema)]
-struct OfNumber<'a> {
+struct ChangedNumberDocument<'a> {
     /// `variable.term`, or `rule 3`.
     of: &'a str,
     /// The number that moved, such as `peak`.
@@ -286,14 +286,14 @@ struct OfNumber<'a> {
 }
 
 impl<'a> Document<'a> {
-    pub(super) fn new(arguments: &Arguments, outcome: &'a Outcome) -> Document<'a> {
-        let bin = |bin: &Bin| OfBin {
+    pub(super) fn new(arguments: &Arguments, outcome: &'a TuneOutcome) -> Document<'a> {
+        let bin = |bin: &Bin| BinDocument {
             rows: bin.rows,
             predicted: bin.predicted,
             observed: bin.observed,
         };
         let tuned = &outcome.tuned;
-        let moved = tuned.moved.iter().map(|moved| OfNumber {
+        let moved = tuned.moved.iter().map(|moved| ChangedNumberDocument {
             of: &moved.of,
             name: &moved.name,
             before: moved.before,
@@ -301,7 +301,7 @@ impl<'a> Document<'a> {
         });
         Document {
             schema: SCHEMA,
-            rows: Rows {
+            rows: RowsDocument {
                 used: outcome.rows,
                 without_value: tuned.without_value,
                 refused: outcome.refused.len(),
@@ -312,16 +312,19 @@ impl<'a> Document<'a> {
             after: tuned.after,
             ended_early: tuned.is_stopped,
             from_checkpoint: outcome.is_resumed,
-            validation: outcome.validation.as_ref().map(|validation| OfValidation {
-                parts: validation.folds,
-                before: (&validation.before).into(),
-                after: (&validation.after).into(),
-                gain: (&validation.gain).into(),
-                reliability: validation.reliability.iter().map(bin).collect(),
-                confusion: validation.confusion.as_ref().map(Into::into),
-            }),
+            validation: outcome
+                .validation
+                .as_ref()
+                .map(|validation| ValidationDocument {
+                    parts: validation.folds,
+                    before: (&validation.before).into(),
+                    after: (&validation.after).into(),
+                    gain: (&validation.gain).into(),
+                    reliability: validation.reliability.iter().map(bin).collect(),
+                    confusion: validation.confusion.as_ref().map(Into::into),
+                }),
             learning_curve: outcome.curve.as_ref().map(|curve| {
-                let points = curve.iter().map(|point| OfPoint {
+                let points = curve.iter().map(|point| CurvePointDocument {
                     share: point.share,
                     left_out: point.left_out,
                 });

@@ -13,20 +13,20 @@ use std::{
 };
 
 use flagred::{estimator::Estimator, flight::Verdict};
-use flagred_flightlog::mavlink::{Key, Next, Stream, next_packet};
+use flagred_flightlog::mavlink::{Key, PacketScan, Stream, next_packet};
 use flagred_report::words::level_style;
 use fuzzy::drawing::visible;
 
 use super::{
     DATAGRAM, FRAMES, LINES,
     endpoint::Endpoint,
-    fleet::{Fleet, Id, Summary, worst},
+    fleet::{Fleet, Summary, VehicleId, worst},
     jsonl::{self, FleetLine},
     lines,
-    port::{Port, Received},
+    port::{Port, PortEvent},
     printer::Printer,
     screen,
-    session::{Event, Session, Source, View},
+    session::{Event, Session, Source, VehicleView},
 };
 use crate::{
     assess::{FailOn, exit_of},
@@ -47,7 +47,7 @@ enum LinkItem {
 
 /// The form of the output.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Face {
+enum OutputForm {
     Json,
     Words,
     Screen,
@@ -61,10 +61,10 @@ pub(super) fn run(
     estimator: &Estimator,
     stop: &Arc<AtomicBool>,
 ) -> Result<Exit, Failure> {
-    let face = match (jsonl, io::stdout().is_terminal()) {
-        (true, _) => Face::Json,
-        (false, false) => Face::Words,
-        (false, true) => Face::Screen,
+    let form = match (jsonl, io::stdout().is_terminal()) {
+        (true, _) => OutputForm::Json,
+        (false, false) => OutputForm::Words,
+        (false, true) => OutputForm::Screen,
     };
     let (sender, receiver) = sync_channel(PACKETS);
     let (mut names, mut small) = (Vec::new(), Vec::new());
@@ -84,9 +84,13 @@ pub(super) fn run(
         thread::spawn(move || listen(link, &name, port, stream, &sender, &stop));
     }
     drop(sender);
-    let printer = Printer::new(if face == Face::Screen { FRAMES } else { LINES });
+    let printer = Printer::new(if form == OutputForm::Screen {
+        FRAMES
+    } else {
+        LINES
+    });
     let mut shown = LiveOutput {
-        face,
+        form,
         printer,
         endpoints,
         estimator,
@@ -116,24 +120,24 @@ fn listen(
     let mut buffer = vec![0; DATAGRAM];
     while !stop.load(Ordering::Relaxed) {
         let note = match port.receive(&mut buffer) {
-            Received::Bytes(count) => {
+            PortEvent::Bytes(count) => {
                 stream.push(buffer.get(..count).unwrap_or_default());
                 None
             }
-            Received::Datagram(count) => {
+            PortEvent::Datagram(count) => {
                 stream.end();
                 stream.push(buffer.get(..count).unwrap_or_default());
                 None
             }
-            Received::Nothing => None,
-            Received::Waiting(why) => Some(format!(
+            PortEvent::Nothing => None,
+            PortEvent::Waiting(why) => Some(format!(
                 "`{name}` cannot be opened yet: {why}; trying again every second"
             )),
-            Received::Opened => {
+            PortEvent::Opened => {
                 stream.end();
                 Some(format!("`{name}`: the link is open"))
             }
-            Received::Closed(why) => Some(format!("`{name}`: the link is closed: {why}")),
+            PortEvent::Closed(why) => Some(format!("`{name}`: the link is closed: {why}")),
         };
         let source = port.source();
         let mut is_heard =
@@ -164,7 +168,7 @@ fn follow<'e>(
         let now_s = start.elapsed().as_secs_f64();
         match heard {
             Ok((link, LinkItem::Packet(source, bytes))) => {
-                if let Next::Packet(packet) = next_packet(&bytes) {
+                if let PacketScan::Packet(packet) = next_packet(&bytes) {
                     fleet.receive(now_s, (link, source), &packet, |id, event, session| {
                         shown.event(now_s, id, event, session);
                     });
@@ -180,7 +184,7 @@ fn follow<'e>(
                 shown.event(now_s, id, event, session)
             });
         }
-        if shown.face == Face::Screen && drawn.elapsed() >= FRAME {
+        if shown.form == OutputForm::Screen && drawn.elapsed() >= FRAME {
             drawn = Instant::now();
             let frame = shown.frame(fleet, screen::size());
             shown.printer.print(frame);
@@ -190,7 +194,7 @@ fn follow<'e>(
 
 /// Prints events in the chosen form.
 struct LiveOutput<'e> {
-    face: Face,
+    form: OutputForm,
     printer: Printer,
     endpoints: &'e [Endpoint],
     estimator: &'e Estimator,
@@ -199,18 +203,20 @@ struct LiveOutput<'e> {
 impl<'e> LiveOutput<'e> {
     fn start(&mut self, names: &[String]) {
         let profile = &self.estimator.profile().name;
-        let text = match self.face {
-            Face::Json => {
+        let text = match self.form {
+            OutputForm::Json => {
                 return self.json(&FleetLine::started(names, profile));
             }
-            Face::Words => lines::words(0.0, &format!("{}, profile {profile}", names.join(", "))),
-            Face::Screen => screen::ENTER.to_owned(),
+            OutputForm::Words => {
+                lines::words(0.0, &format!("{}, profile {profile}", names.join(", ")))
+            }
+            OutputForm::Screen => screen::ENTER.to_owned(),
         };
         self.printer.print(text);
     }
 
     /// The name of a vehicle: its system and its address.
-    fn name(&self, id: Id) -> String {
+    fn name(&self, id: VehicleId) -> String {
         let from = match id.source {
             Some(address) => address.to_string(),
             None => (self.endpoints.get(id.link)).map_or(String::new(), Endpoint::to_string),
@@ -218,21 +224,21 @@ impl<'e> LiveOutput<'e> {
         format!("{}@{from}", id.system)
     }
 
-    fn event(&mut self, now_s: f64, id: Id, event: &Event, session: &Session<'e>) {
+    fn event(&mut self, now_s: f64, id: VehicleId, event: &Event, session: &Session<'e>) {
         let name = || self.name(id);
-        let text = match self.face {
-            Face::Json => {
+        let text = match self.form {
+            OutputForm::Json => {
                 if let Some(watch) = jsonl::line(now_s, event, session, self.estimator) {
                     let vehicle = name();
                     self.json(&FleetLine::Event { vehicle, watch });
                 }
                 return;
             }
-            Face::Words if !matches!(event, Event::Risk { .. }) => {
+            OutputForm::Words if !matches!(event, Event::Risk { .. }) => {
                 let what = lines::describe(event, session, self.estimator);
                 lines::words(now_s, &format!("{}: {what}", name()))
             }
-            Face::Words | Face::Screen => return,
+            OutputForm::Words | OutputForm::Screen => return,
         };
         self.printer.print(text);
     }
@@ -244,13 +250,13 @@ impl<'e> LiveOutput<'e> {
     }
 
     fn note(&mut self, now_s: f64, text: &str) {
-        match self.face {
-            Face::Json => {
+        match self.form {
+            OutputForm::Json => {
                 let at_s = jsonl::rounded(now_s);
                 self.json(&FleetLine::Note { at_s, note: text });
             }
-            Face::Words => self.printer.print(lines::words(now_s, text)),
-            Face::Screen => {}
+            OutputForm::Words => self.printer.print(lines::words(now_s, text)),
+            OutputForm::Screen => {}
         }
     }
 
@@ -277,7 +283,7 @@ impl<'e> LiveOutput<'e> {
         screen::text(&lines, rows)
     }
 
-    fn row(&self, id: Id, view: &View<'_>, columns: usize) -> String {
+    fn row(&self, id: VehicleId, view: &VehicleView<'_>, columns: usize) -> String {
         let latest = view.latest;
         let state = match (view.link_lost, view.motors_lost, view.is_in_air) {
             (true, ..) => "LINK LOST",
@@ -304,10 +310,10 @@ impl<'e> LiveOutput<'e> {
 
     /// Leaves the screen, and prints a line for each vehicle.
     fn end(&mut self, now_s: f64, all: &[Summary], fleet: &Fleet<'_>) {
-        if self.face == Face::Screen {
+        if self.form == OutputForm::Screen {
             thread::sleep(TICK);
             self.printer.print(screen::LEAVE.to_owned());
-            self.face = Face::Words;
+            self.form = OutputForm::Words;
         }
         for one in all {
             let name = self.name(one.id);
@@ -317,8 +323,8 @@ impl<'e> LiveOutput<'e> {
                 Verdict::NotAvailable(reason) => reason.help(),
                 Verdict::Known(_) => None,
             };
-            let text = match self.face {
-                Face::Json => {
+            let text = match self.form {
+                OutputForm::Json => {
                     self.json(&FleetLine::Summary {
                         vehicle: &name,
                         verdict: (&one.verdict).into(),
@@ -342,8 +348,8 @@ impl<'e> LiveOutput<'e> {
         }
         let worst = worst(all);
         let (vehicles, dropped) = (all.len(), self.printer.dropped());
-        let text = match self.face {
-            Face::Json => {
+        let text = match self.form {
+            OutputForm::Json => {
                 return self.json(&FleetLine::Ended {
                     worst: (&worst).into(),
                     vehicles,
@@ -361,7 +367,7 @@ impl<'e> LiveOutput<'e> {
 /// Restores the terminal, however the watch ends.
 impl Drop for LiveOutput<'_> {
     fn drop(&mut self) {
-        if self.face == Face::Screen {
+        if self.form == OutputForm::Screen {
             self.printer.print(screen::LEAVE.to_owned());
         }
     }
@@ -376,14 +382,14 @@ fn cut(line: &str, columns: usize) -> String {
 mod tests {
     use super::*;
     use crate::watch::{
-        fleet::tests::{AT_LIMITS, Air, HOVER},
+        fleet::tests::{AT_LIMITS, HOVER, TestLink},
         session::tests::estimator,
     };
 
     #[test]
     fn the_vehicle_in_most_danger_is_on_the_smallest_screen() {
         let estimator = estimator();
-        let mut air = Air::new(&estimator);
+        let mut air = TestLink::new(&estimator);
         let calm: Vec<(u8, bool, [u16; 4])> =
             (10..30).map(|system| (system, true, HOVER)).collect();
         let on_the_ground = (1, false, [1000; 4]);
@@ -401,7 +407,7 @@ mod tests {
         );
         let endpoints = ["udpin:0.0.0.0:14550".parse().unwrap()];
         let shown = LiveOutput {
-            face: Face::Screen,
+            form: OutputForm::Screen,
             printer: Printer::new(1),
             endpoints: &endpoints,
             estimator: &estimator,

@@ -8,7 +8,7 @@ use flagred::{
 };
 use flagred_flightlog::mavlink::{Packet, vehicle_of};
 
-use super::session::{Event, Out, Session, Source, View, may_be_multirotor};
+use super::session::{Event, Session, SessionOutput, Source, VehicleView, may_be_multirotor};
 
 /// Maximum number of vehicles at a time.
 const MOST: usize = 1_000;
@@ -24,7 +24,7 @@ const HISTORY: usize = 1_500;
 
 /// The identity of a vehicle. Equal systems of different senders are different vehicles, since every new autopilot has system id 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(crate) struct Id {
+pub(crate) struct VehicleId {
     pub(crate) link: usize,
     pub(crate) source: Source,
     pub(crate) system: u8,
@@ -40,7 +40,7 @@ pub(crate) struct Member<'e> {
 /// The summary of a vehicle.
 #[derive(Debug, Clone)]
 pub(crate) struct Summary {
-    pub(crate) id: Id,
+    pub(crate) id: VehicleId,
     pub(crate) verdict: Verdict,
     pub(crate) risk_max: Option<f64>,
     pub(crate) lost_share: f64,
@@ -49,9 +49,9 @@ pub(crate) struct Summary {
 /// All vehicles that are received.
 pub(crate) struct Fleet<'e> {
     estimator: &'e Estimator,
-    members: HashMap<Id, Member<'e>>,
+    members: HashMap<VehicleId, Member<'e>>,
     gone: Vec<Summary>,
-    out: Out,
+    out: SessionOutput,
     /// Numbers of refused heartbeats of vehicles beyond the maximum, and of dropped vehicles missing from the summary.
     pub(crate) refused: u64,
     pub(crate) forgotten: u64,
@@ -63,7 +63,7 @@ impl<'e> Fleet<'e> {
             estimator,
             members: HashMap::new(),
             gone: Vec::new(),
-            out: Out::default(),
+            out: SessionOutput::default(),
             refused: 0,
             forgotten: 0,
         }
@@ -75,10 +75,10 @@ impl<'e> Fleet<'e> {
         now_s: f64,
         (link, source): (usize, Source),
         packet: &Packet<'_>,
-        mut tell: impl FnMut(Id, &Event, &Session<'e>),
+        mut tell: impl FnMut(VehicleId, &Event, &Session<'e>),
     ) {
         let system = packet.system;
-        let id = Id {
+        let id = VehicleId {
             link,
             source,
             system,
@@ -104,7 +104,11 @@ impl<'e> Fleet<'e> {
     }
 
     /// Performs the periodic work, and drops silent vehicles.
-    pub(crate) fn tick(&mut self, now_s: f64, mut tell: impl FnMut(Id, &Event, &Session<'e>)) {
+    pub(crate) fn tick(
+        &mut self,
+        now_s: f64,
+        mut tell: impl FnMut(VehicleId, &Event, &Session<'e>),
+    ) {
         let mut gone = Vec::new();
         for (id, member) in &mut self.members {
             member.session.tick(now_s, &mut self.out);
@@ -131,7 +135,7 @@ impl<'e> Fleet<'e> {
     /// Ends all flights, and returns a summary of each vehicle, the worst first.
     pub(crate) fn finish(
         &mut self,
-        mut tell: impl FnMut(Id, &Event, &Session<'e>),
+        mut tell: impl FnMut(VehicleId, &Event, &Session<'e>),
     ) -> Vec<Summary> {
         let mut all = std::mem::take(&mut self.gone);
         for (id, mut member) in self.members.drain() {
@@ -145,18 +149,18 @@ impl<'e> Fleet<'e> {
 
     /// The vehicles that were found: the worst level first, then the highest risk. A vehicle in the air with unknown risk
     /// ranks between WARN and GOOD, a vehicle on the ground last.
-    pub(crate) fn views(&self) -> Vec<(Id, View<'_>)> {
+    pub(crate) fn views(&self) -> Vec<(VehicleId, VehicleView<'_>)> {
         let members = self.members.iter();
-        let mut views: Vec<(Id, View<'_>)> = members
+        let mut views: Vec<(VehicleId, VehicleView<'_>)> = members
             .filter_map(|(id, member)| Some((*id, member.session.view()?)))
             .collect();
-        let rank = |view: &View<'_>| {
+        let rank = |view: &VehicleView<'_>| {
             let level = view.latest.and_then(|latest| latest.level);
             level.map_or(if view.is_in_air { 1.5 } else { -1.0 }, |level| {
                 f64::from(level as u8)
             })
         };
-        let risk = |view: &View<'_>| {
+        let risk = |view: &VehicleView<'_>| {
             let risk = view.latest.and_then(|latest| latest.risk.ok());
             risk.map_or(-1.0, |estimate| estimate.risk_pct)
         };
@@ -170,7 +174,12 @@ impl<'e> Fleet<'e> {
 }
 
 impl<'e> Member<'e> {
-    fn tell(&mut self, id: Id, out: &mut Out, tell: &mut impl FnMut(Id, &Event, &Session<'e>)) {
+    fn tell(
+        &mut self,
+        id: VehicleId,
+        out: &mut SessionOutput,
+        tell: &mut impl FnMut(VehicleId, &Event, &Session<'e>),
+    ) {
         // A fleet only receives.
         out.packets.clear();
         for event in out.events.drain(..) {
@@ -186,9 +195,9 @@ impl<'e> Member<'e> {
 
     fn finish(
         &mut self,
-        id: Id,
-        out: &mut Out,
-        tell: &mut impl FnMut(Id, &Event, &Session<'e>),
+        id: VehicleId,
+        out: &mut SessionOutput,
+        tell: &mut impl FnMut(VehicleId, &Event, &Session<'e>),
     ) -> Summary {
         let verdict = self.session.finish(out);
         self.tell(id, out, tell);
@@ -219,20 +228,22 @@ fn gravity(summary: &Summary) -> f64 {
 
 #[cfg(test)]
 pub(crate) mod tests {
-    use flagred_flightlog::mavlink::{Next, Sender, Version, dialect::MavMessage, next_packet};
+    use flagred_flightlog::mavlink::{
+        PacketScan, Sender, Version, dialect::MavMessage, next_packet,
+    };
 
     use super::*;
     use crate::watch::session::tests::{estimator, quadrotor, servo};
 
     /// A fleet on one link, and its clock.
-    pub(crate) struct Air<'e> {
+    pub(crate) struct TestLink<'e> {
         pub(crate) fleet: Fleet<'e>,
         now_s: f64,
     }
 
-    impl<'e> Air<'e> {
-        pub(crate) fn new(estimator: &'e Estimator) -> Air<'e> {
-            Air {
+    impl<'e> TestLink<'e> {
+        pub(crate) fn new(estimator: &'e Estimator) -> TestLink<'e> {
+            TestLink {
                 fleet: Fleet::new(estimator),
                 now_s: 0.0,
             }
@@ -240,7 +251,7 @@ pub(crate) mod tests {
 
         fn hear(&mut self, system: u8, message: &MavMessage) {
             let bytes = Sender::new(1).packet(Version::V2, system, message);
-            let Next::Packet(packet) = next_packet(&bytes) else {
+            let PacketScan::Packet(packet) = next_packet(&bytes) else {
                 panic!("{bytes:?}");
             };
             (self.fleet).receive(self.now_s, (0, None), &packet, |_, _, _| {});
@@ -271,7 +282,7 @@ pub(crate) mod tests {
     #[test]
     fn a_vehicle_lost_in_the_air_is_listed_above_good_ones() {
         let estimator = estimator();
-        let mut air = Air::new(&estimator);
+        let mut air = TestLink::new(&estimator);
         let calm = [(1, false, [1000; 4]), (2, true, HOVER), (3, true, HOVER)];
         air.fly(40, &[calm[0], calm[1], calm[2], (4, true, HOVER)]);
         air.fly(8, &[calm[0], calm[1], (4, true, AT_LIMITS)]);
@@ -283,7 +294,7 @@ pub(crate) mod tests {
     #[test]
     fn a_vehicle_without_motor_outputs_ends_with_that_reason() {
         let estimator = estimator();
-        let mut air = Air::new(&estimator);
+        let mut air = TestLink::new(&estimator);
         for second in 0..40 {
             air.fly(1, &[(1, true, HOVER), (3, false, [1000; 4])]);
             air.hear(2, &quadrotor(second > 10));
@@ -322,7 +333,7 @@ pub(crate) mod tests {
     #[test]
     fn a_vehicle_that_is_silent_for_a_minute_is_gone_and_its_summary_stays() {
         let estimator = estimator();
-        let mut air = Air::new(&estimator);
+        let mut air = TestLink::new(&estimator);
         let (one, other) = ((1, true, HOVER), (2, true, HOVER));
         air.fly(30, &[one, other]);
         air.fly(59, &[other]);
@@ -349,7 +360,7 @@ pub(crate) mod tests {
         let estimator = estimator();
         let mut fleet = Fleet::new(&estimator);
         let bytes = Sender::new(1).packet(Version::V2, 1, &quadrotor(false));
-        let Next::Packet(packet) = next_packet(&bytes) else {
+        let PacketScan::Packet(packet) = next_packet(&bytes) else {
             panic!("{bytes:?}");
         };
         for link in 0..MOST + 7 {

@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use super::{
     lines::teller,
-    session::{Doubts, End, Event, FlightSummary, Lost, Session, StopReason},
+    session::{ContactLoss, End, Event, FlightSummary, Session, StopReason, UntrustedCounts},
 };
 use flagred_report::document::FindingDocument;
 
@@ -44,18 +44,18 @@ pub(crate) enum EventLine<'a> {
     /// A finding ended.
     Finding(FindingDocument<'a>),
     /// The vehicle landed.
-    Landed(FlownLine<'a>),
+    Landed(ObservedFlightLine<'a>),
     /// The vehicle was in the air when contact was lost.
     LostInAir {
         #[serde(flatten)]
-        flown: FlownLine<'a>,
+        flown: ObservedFlightLine<'a>,
         /// The reason why contact was lost: the link, the motor commands, or a reboot of the vehicle.
-        why: Lost,
+        why: ContactLoss,
     },
     /// The vehicle is still in the air, but the flight is no longer followed.
     LeftInAir {
         #[serde(flatten)]
-        flown: FlownLine<'a>,
+        flown: ObservedFlightLine<'a>,
         /// The reason why the flight is no longer followed.
         why: StopReason,
     },
@@ -78,7 +78,7 @@ pub(crate) enum EventLine<'a> {
         /// The number of packets refused because their signature is wrong or repeated (`--key`).
         bad_signatures: u64,
         /// The numbers of packets that were not trusted.
-        not_believed: Doubts,
+        not_believed: UntrustedCounts,
         /// The number of packets that could not be sent.
         unsent: u64,
         /// The number of lines that were dropped because the reader was too slow.
@@ -119,7 +119,7 @@ pub(crate) struct Risk<'a> {
 /// The observed part of a flight.
 #[derive(Serialize, JsonSchema)]
 #[schemars(inline)]
-pub(crate) struct FlownLine<'a> {
+pub(crate) struct ObservedFlightLine<'a> {
     /// The latest time on the clock of the vehicle, in seconds.
     t_s: Option<f64>,
     #[serde(flatten)]
@@ -130,9 +130,9 @@ pub(crate) struct FlownLine<'a> {
     risk_max: Option<f64>,
 }
 
-impl<'a> FlownLine<'a> {
+impl<'a> ObservedFlightLine<'a> {
     fn new(flown: &'a FlightSummary) -> Self {
-        FlownLine {
+        ObservedFlightLine {
             t_s: flown.t_s,
             verdict: &flown.verdict,
             level_seen: flown.level_seen,
@@ -250,13 +250,13 @@ pub(crate) fn line<'a>(
             EventLine::Finding(FindingDocument::new(finding, teller))
         }
         Event::Over { end, flown } => match end {
-            End::Landed => EventLine::Landed(FlownLine::new(flown)),
+            End::Landed => EventLine::Landed(ObservedFlightLine::new(flown)),
             End::Lost(why) => EventLine::LostInAir {
-                flown: FlownLine::new(flown),
+                flown: ObservedFlightLine::new(flown),
                 why: *why,
             },
             End::LeftInAir(why) => EventLine::LeftInAir {
-                flown: FlownLine::new(flown),
+                flown: ObservedFlightLine::new(flown),
                 why: *why,
             },
         },

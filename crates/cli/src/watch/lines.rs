@@ -10,7 +10,8 @@ use flagred_flightlog::{Vehicle, mavlink::Setup};
 use fuzzy::drawing::visible;
 
 use super::session::{
-    Doubt, End, Event, FlightSummary, Lost, Session, Silent, Source, StopReason, View,
+    ContactLoss, End, Event, FlightSummary, Session, SilentSource, Source, StopReason,
+    UntrustedPacket, VehicleView,
 };
 use flagred_report::{finding::Teller, words::effective_range};
 
@@ -76,14 +77,14 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
             component,
             address,
         } => match what {
-            Doubt::SecondSender => format!(
+            UntrustedPacket::SecondSender => format!(
                 "another sender{} that uses the number of vehicle {system} is ignored",
                 from(*address)
             ),
-            Doubt::OtherComponent => format!(
+            UntrustedPacket::OtherComponent => format!(
                 "component {component} of vehicle {system} sends parameters: they are ignored, because this component is not the autopilot"
             ),
-            Doubt::ClockJump => format!(
+            UntrustedPacket::ClockJump => format!(
                 "vehicle {system} sent a timestamp that jumps while its clock continues: the timestamp is ignored"
             ),
         },
@@ -117,17 +118,17 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
             )
         }
         Event::Note { text } => text.clone(),
-        Event::Lost { what: Silent::Link } => {
-            "LINK LOST: no packets from the vehicle, the risk is unknown".to_owned()
-        }
         Event::Lost {
-            what: Silent::MotorCommands,
+            what: SilentSource::Link,
+        } => "LINK LOST: no packets from the vehicle, the risk is unknown".to_owned(),
+        Event::Lost {
+            what: SilentSource::MotorCommands,
         } => "no motor commands are received (SERVO_OUTPUT_RAW), the risk is unknown".to_owned(),
         Event::Back { what, after_s } => format!(
             "{} again, after {after_s:.1} s of silence",
             match what {
-                Silent::Link => "the vehicle is received",
-                Silent::MotorCommands => "motor commands are received",
+                SilentSource::Link => "the vehicle is received",
+                SilentSource::MotorCommands => "motor commands are received",
             }
         ),
         Event::Rebooted => "the vehicle rebooted: earlier data are discarded".to_owned(),
@@ -204,15 +205,15 @@ fn over(end: End, flown: &FlightSummary) -> String {
     text
 }
 
-fn cause_of(lost: Lost) -> &'static str {
+fn cause_of(lost: ContactLoss) -> &'static str {
     match lost {
-        Lost::Link => "no packets from the vehicle",
-        Lost::MotorCommands => "motor commands are no longer received",
-        Lost::Reboot => "the vehicle rebooted",
+        ContactLoss::Link => "no packets from the vehicle",
+        ContactLoss::MotorCommands => "motor commands are no longer received",
+        ContactLoss::Reboot => "the vehicle rebooted",
     }
 }
 
-pub(super) fn teller<'a>(view: Option<&View<'a>>, estimator: &'a Estimator) -> Teller<'a> {
+pub(super) fn teller<'a>(view: Option<&VehicleView<'a>>, estimator: &'a Estimator) -> Teller<'a> {
     let setup = view.and_then(|view| view.setup);
     Teller {
         estimator,
@@ -253,7 +254,7 @@ fn ready(setup: &Setup) -> String {
 }
 
 /// Describes the risk of a moment and the values behind it.
-fn risk(update: &Update, view: &View<'_>, estimator: &Estimator) -> String {
+fn risk(update: &Update, view: &VehicleView<'_>, estimator: &Estimator) -> String {
     let number = |value: Option<f64>| value.map_or("unknown".to_owned(), |v| format!("{v:.2}"));
     let tail = format!(
         "margin {}, spread {}",

@@ -26,7 +26,7 @@ use std::{
 use flagred::{estimator::Estimator, flight::Verdict};
 use flagred_flightlog::{
     Format, known_signals,
-    mavlink::{Key, Sender, Skipped, Stream},
+    mavlink::{Key, Sender, SkipCounts, Stream},
 };
 
 use crate::{
@@ -39,10 +39,10 @@ use crate::{
 use endpoint::Endpoint;
 use jsonl::EventLine;
 pub(crate) use jsonl::{FleetLine, Line};
-use port::{Port, Received};
+use port::{Port, PortEvent};
 use printer::Printer;
 use screen::Screen;
-use session::{Doubts, Event, Out, Session};
+use session::{Event, Session, SessionOutput, UntrustedCounts};
 
 /// The default component id: the first one reserved for onboard computers.
 const COMPONENT: u8 = 191;
@@ -184,31 +184,31 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut display = Display::new(arguments.jsonl, &title, &estimator)?;
     let mut stream = key.map_or_else(Stream::new, Stream::with_key);
     let mut buffer = vec![0; DATAGRAM];
-    let mut out = Out::default();
+    let mut out = SessionOutput::default();
     let start = Instant::now();
     // If nobody reads the output, the watch continues as long as it sends warnings or records.
     let is_needed = !arguments.no_send || arguments.record.is_some();
     while !stop.load(Ordering::Relaxed) && (is_needed || !display.printer.is_closed()) {
         let received = port.receive(&mut buffer);
-        let is_datagram = matches!(received, Received::Datagram(_));
+        let is_datagram = matches!(received, PortEvent::Datagram(_));
         let now_s = start.elapsed().as_secs_f64();
         match received {
-            Received::Bytes(count) | Received::Datagram(count) => {
+            PortEvent::Bytes(count) | PortEvent::Datagram(count) => {
                 stream.push(buffer.get(..count).unwrap_or_default());
             }
-            Received::Nothing => {}
-            Received::Waiting(why) => {
+            PortEvent::Nothing => {}
+            PortEvent::Waiting(why) => {
                 let text = format!(
                     "`{endpoint}` cannot be opened yet: {why}; trying again every second (with `--no-wait`, `watch` ends instead)"
                 );
                 out.events.push(Event::Note { text });
             }
-            Received::Opened => {
+            PortEvent::Opened => {
                 stream.end();
                 let text = "the link is open".to_owned();
                 out.events.push(Event::Note { text });
             }
-            Received::Closed(why) => {
+            PortEvent::Closed(why) => {
                 session.closed();
                 let text = format!("the link is closed: {why}; waiting for it to open again");
                 out.events.push(Event::Note { text });
@@ -269,8 +269,8 @@ fn read_key(path: &Path) -> Result<Key, Failure> {
 
 /// Counts of packets that were skipped, doubted or not sent.
 struct Totals {
-    skipped: Skipped,
-    doubts: Doubts,
+    skipped: SkipCounts,
+    doubts: UntrustedCounts,
     unsent: u64,
 }
 
@@ -291,7 +291,7 @@ impl Totals {
             );
         }
         let doubts = self.doubts;
-        if doubts != Doubts::default() {
+        if doubts != UntrustedCounts::default() {
             text += &format!(
                 "; ignored: {} packets of a second sender, {} parameters of other components, {} jumps of the clock",
                 doubts.second_sender, doubts.other_component, doubts.clock_jumps
@@ -303,13 +303,13 @@ impl Totals {
 
 /// Prints events in the chosen form.
 struct Display {
-    face: Face,
+    form: DisplayForm,
     printer: Printer,
-    told: Skipped,
+    told: SkipCounts,
     drawn: Option<Instant>,
 }
 
-enum Face {
+enum DisplayForm {
     Json,
     Words(lines::Words),
     Screen(Screen),
@@ -320,22 +320,22 @@ impl Display {
         let profile = &estimator.profile().name;
         let is_screen = !jsonl && io::stdout().is_terminal();
         let mut printer = Printer::new(if is_screen { FRAMES } else { LINES });
-        let face = if jsonl {
+        let form = if jsonl {
             let started = Line::new(0.0, EventLine::started(title, profile));
             printer.print(jsonl::text(&started)?);
-            Face::Json
+            DisplayForm::Json
         } else if is_screen {
             let title = format!("{title}, profile {profile}");
             printer.print(screen::ENTER.to_owned());
-            Face::Screen(Screen::new(title))
+            DisplayForm::Screen(Screen::new(title))
         } else {
             printer.print(lines::words(0.0, &format!("{title}, profile {profile}")));
-            Face::Words(lines::Words::default())
+            DisplayForm::Words(lines::Words::default())
         };
         Ok(Display {
-            face,
+            form,
             printer,
-            told: Skipped::default(),
+            told: SkipCounts::default(),
             drawn: None,
         })
     }
@@ -349,13 +349,13 @@ impl Display {
         estimator: &Estimator,
     ) -> Result<(), Failure> {
         for event in events.drain(..) {
-            let line = match &mut self.face {
-                Face::Json => {
+            let line = match &mut self.form {
+                DisplayForm::Json => {
                     let line = jsonl::line(at_s, &event, session, estimator);
                     line.map(|line| jsonl::text(&line)).transpose()?
                 }
-                Face::Words(words) => words.line(at_s, &event, session, estimator),
-                Face::Screen(screen) => {
+                DisplayForm::Words(words) => words.line(at_s, &event, session, estimator),
+                DisplayForm::Screen(screen) => {
                     screen.add(at_s, &event, session, estimator);
                     None
                 }
@@ -368,7 +368,7 @@ impl Display {
     }
 
     /// Adds a note the first time that packets of a kind are skipped. The counts are reported at the end.
-    fn skipped(&mut self, now: Skipped, events: &mut Vec<Event>) {
+    fn skipped(&mut self, now: SkipCounts, events: &mut Vec<Event>) {
         let told = std::mem::replace(&mut self.told, now);
         let kinds = [
             (
@@ -406,7 +406,7 @@ impl Display {
     }
 
     fn refresh(&mut self, session: &Session<'_>, estimator: &Estimator) {
-        if let Face::Screen(screen) = &self.face
+        if let DisplayForm::Screen(screen) = &self.form
             && self.drawn.is_none_or(|drawn| drawn.elapsed() >= FRAME)
         {
             self.drawn = Some(Instant::now());
@@ -416,7 +416,7 @@ impl Display {
     }
 
     fn end(mut self, at_s: f64, worst: &Verdict, totals: &Totals) -> Result<(), Failure> {
-        let last = if let Face::Json = self.face {
+        let last = if let DisplayForm::Json = self.form {
             let ended = EventLine::Ended {
                 worst: worst.into(),
                 reason: lines::reason(worst),
@@ -442,11 +442,11 @@ impl Display {
 
     /// Leaves the screen before the final line, which must remain visible.
     fn leave(&mut self) {
-        if let Face::Screen(_) = self.face {
+        if let DisplayForm::Screen(_) = self.form {
             // Queued frames are printed first.
             std::thread::sleep(FRAME);
             self.printer.print(screen::LEAVE.to_owned());
-            self.face = Face::Words(lines::Words::default());
+            self.form = DisplayForm::Words(lines::Words::default());
         }
     }
 }

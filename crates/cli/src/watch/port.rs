@@ -22,14 +22,14 @@ const BUFFER: usize = 4 << 20;
 
 /// An open endpoint.
 pub(crate) struct Port {
-    kind: Kind,
+    kind: PortState,
     /// The reason why the endpoint could not be opened at first, until this is reported.
     closed_because: Option<String>,
     /// The number of packets that could not be sent.
     unsent: u64,
 }
 
-enum Kind {
+enum PortState {
     /// The endpoint could not be opened yet.
     Closed { endpoint: Endpoint, tried: Instant },
     Udp {
@@ -70,7 +70,7 @@ struct Client {
 }
 
 /// The result of reading from the port.
-pub(crate) enum Received {
+pub(crate) enum PortEvent {
     /// This number of bytes.
     Bytes(usize),
     /// A datagram of this number of bytes. A packet does not continue in the next datagram.
@@ -95,7 +95,7 @@ impl Port {
         let (kind, closed_because) = match open(endpoint) {
             Ok(kind) => (kind, None),
             Err(error) if waits && is_temporary(&error) => {
-                let closed = Kind::Closed {
+                let closed = PortState::Closed {
                     endpoint: endpoint.clone(),
                     tried: Instant::now(),
                 };
@@ -113,49 +113,49 @@ impl Port {
     /// The local address of a listening endpoint, with the actual port instead of 0.
     pub(crate) fn listens_at(&self) -> Option<SocketAddr> {
         match &self.kind {
-            Kind::Udp { socket, .. } => socket.local_addr().ok(),
-            Kind::TcpIn { listener, .. } => listener.local_addr().ok(),
-            Kind::Closed { .. } | Kind::Tcp { .. } | Kind::Serial { .. } => None,
+            PortState::Udp { socket, .. } => socket.local_addr().ok(),
+            PortState::TcpIn { listener, .. } => listener.local_addr().ok(),
+            PortState::Closed { .. } | PortState::Tcp { .. } | PortState::Serial { .. } => None,
         }
     }
 
     /// The size of the system's buffer for datagrams, if it is less than half of the requested size.
     pub(crate) fn small_buffer(&self) -> Option<usize> {
         match &self.kind {
-            Kind::Udp { socket, .. } => buffer(socket).filter(|bytes| *bytes < BUFFER / 2),
+            PortState::Udp { socket, .. } => buffer(socket).filter(|bytes| *bytes < BUFFER / 2),
             _ => None,
         }
     }
 
     /// Waits briefly for bytes.
-    pub(crate) fn receive(&mut self, buffer: &mut [u8]) -> Received {
+    pub(crate) fn receive(&mut self, buffer: &mut [u8]) -> PortEvent {
         if let Some(why) = self.closed_because.take() {
-            return Received::Waiting(why);
+            return PortEvent::Waiting(why);
         }
         match &mut self.kind {
-            Kind::Closed { endpoint, tried } => {
+            PortState::Closed { endpoint, tried } => {
                 if tried.elapsed() < RETRY {
                     thread::sleep(WAIT);
-                    return Received::Nothing;
+                    return PortEvent::Nothing;
                 }
                 *tried = Instant::now();
                 match open(endpoint) {
                     Ok(kind) => {
                         self.kind = kind;
-                        Received::Opened
+                        PortEvent::Opened
                     }
-                    Err(_) => Received::Nothing,
+                    Err(_) => PortEvent::Nothing,
                 }
             }
-            Kind::Udp { socket, from, .. } => match socket.recv_from(buffer) {
+            PortState::Udp { socket, from, .. } => match socket.recv_from(buffer) {
                 Ok((count, address)) => {
                     *from = Some(address);
-                    Received::Datagram(count)
+                    PortEvent::Datagram(count)
                 }
                 // The other side is not listening yet, and may start later.
                 Err(error) => pause(&error),
             },
-            Kind::Tcp {
+            PortState::Tcp {
                 address,
                 stream,
                 tried,
@@ -163,16 +163,16 @@ impl Port {
                 Some(open) => read(open, buffer).unwrap_or_else(|why| {
                     *stream = None;
                     *tried = Instant::now();
-                    Received::Closed(why)
+                    PortEvent::Closed(why)
                 }),
                 None => again(tried, || connect(address), stream),
             },
-            Kind::TcpIn {
+            PortState::TcpIn {
                 listener,
                 client,
                 waiting,
             } => serve(listener, client, waiting, buffer),
-            Kind::Serial {
+            PortState::Serial {
                 path,
                 baud,
                 port,
@@ -181,7 +181,7 @@ impl Port {
                 Some(open) => read(open, buffer).unwrap_or_else(|why| {
                     *port = None;
                     *tried = Instant::now();
-                    Received::Closed(why)
+                    PortEvent::Closed(why)
                 }),
                 None => again(tried, || open_serial(path, *baud), port),
             },
@@ -191,16 +191,16 @@ impl Port {
     /// The origin of the latest bytes; `None` on a serial port.
     pub(crate) fn source(&self) -> Option<SocketAddr> {
         match &self.kind {
-            Kind::Udp { from, .. } => *from,
-            Kind::Tcp { stream, .. } => stream.as_ref()?.peer_addr().ok(),
-            Kind::TcpIn { client, .. } => Some(client.as_ref()?.address),
-            Kind::Closed { .. } | Kind::Serial { .. } => None,
+            PortState::Udp { from, .. } => *from,
+            PortState::Tcp { stream, .. } => stream.as_ref()?.peer_addr().ok(),
+            PortState::TcpIn { client, .. } => Some(client.as_ref()?.address),
+            PortState::Closed { .. } | PortState::Serial { .. } => None,
         }
     }
 
     /// Directs answers to the origin of the latest datagram.
     pub(crate) fn answer(&mut self) {
-        if let Kind::Udp { from, to, .. } = &mut self.kind {
+        if let PortState::Udp { from, to, .. } = &mut self.kind {
             *to = from.or(*to);
         }
     }
@@ -208,20 +208,20 @@ impl Port {
     /// Sends a packet if there is a receiver.
     pub(crate) fn send(&mut self, packet: &[u8]) {
         let sent = match &mut self.kind {
-            Kind::Udp {
+            PortState::Udp {
                 socket,
                 to: Some(to),
                 ..
             } => socket.send_to(packet, *to).map(drop),
-            Kind::Tcp {
+            PortState::Tcp {
                 stream: Some(stream),
                 ..
             }
-            | Kind::TcpIn {
+            | PortState::TcpIn {
                 client: Some(Client { stream, .. }),
                 ..
             } => stream.write_all(packet),
-            Kind::Serial {
+            PortState::Serial {
                 port: Some(port), ..
             } => port.write_all(packet),
             _ => Ok(()),
@@ -235,11 +235,11 @@ impl Port {
     }
 }
 
-fn open(endpoint: &Endpoint) -> io::Result<Kind> {
+fn open(endpoint: &Endpoint) -> io::Result<PortState> {
     let udp = |socket: UdpSocket, to: Option<SocketAddr>| {
         socket.set_read_timeout(Some(WAIT))?;
         enlarge(&socket);
-        Ok(Kind::Udp {
+        Ok(PortState::Udp {
             socket,
             from: None,
             to,
@@ -252,7 +252,7 @@ fn open(endpoint: &Endpoint) -> io::Result<Kind> {
             let any = if to.is_ipv4() { "0.0.0.0:0" } else { "[::]:0" };
             udp(UdpSocket::bind(any)?, Some(to))
         }
-        Endpoint::Tcp(address) => Ok(Kind::Tcp {
+        Endpoint::Tcp(address) => Ok(PortState::Tcp {
             address: address.clone(),
             stream: Some(connect(address)?),
             tried: Instant::now(),
@@ -260,13 +260,13 @@ fn open(endpoint: &Endpoint) -> io::Result<Kind> {
         Endpoint::TcpIn(address) => {
             let listener = TcpListener::bind(address)?;
             listener.set_nonblocking(true)?;
-            Ok(Kind::TcpIn {
+            Ok(PortState::TcpIn {
                 listener,
                 client: None,
                 waiting: Vec::new(),
             })
         }
-        Endpoint::Serial { path, baud } => Ok(Kind::Serial {
+        Endpoint::Serial { path, baud } => Ok(PortState::Serial {
             path: path.clone(),
             baud: *baud,
             port: Some(open_serial(path, *baud)?),
@@ -308,7 +308,7 @@ fn serve(
     client: &mut Option<Client>,
     waiting: &mut Vec<Client>,
     buffer: &mut [u8],
-) -> Received {
+) -> PortEvent {
     if waiting.len() < MOST_WAITING
         && let Ok((stream, address)) = listener.accept()
         && let Ok(stream) = prepare(stream)
@@ -322,18 +322,18 @@ fn serve(
     }
     if let Some(open) = client {
         match read(&mut open.stream, buffer) {
-            Ok(Received::Nothing) => {}
+            Ok(PortEvent::Nothing) => {}
             Ok(received) => {
                 open.heard = Instant::now();
                 return received;
             }
             Err(why) => {
                 *client = None;
-                return Received::Closed(why);
+                return PortEvent::Closed(why);
             }
         }
         if open.heard.elapsed() < CLIENT_SILENT {
-            return Received::Nothing;
+            return PortEvent::Nothing;
         }
         // Drops waiting connections that closed.
         waiting.retain(|next| !matches!(peek(&next.stream), Ok(0)));
@@ -343,19 +343,19 @@ fn serve(
             if waiting.len() == MOST_WAITING {
                 waiting.remove(0);
             }
-            return Received::Nothing;
+            return PortEvent::Nothing;
         };
         *client = Some(waiting.remove(index));
-        return Received::Opened;
+        return PortEvent::Opened;
     }
     if waiting.is_empty() {
         thread::sleep(WAIT);
-        return Received::Nothing;
+        return PortEvent::Nothing;
     }
     let mut next = waiting.remove(0);
     next.heard = Instant::now();
     *client = Some(next);
-    Received::Opened
+    PortEvent::Opened
 }
 
 /// Peeks without waiting: 1 if a byte is available, 0 if the connection closed, otherwise an error.
@@ -366,20 +366,20 @@ fn peek(stream: &TcpStream) -> io::Result<usize> {
     count
 }
 
-fn read(open: &mut impl Read, buffer: &mut [u8]) -> Result<Received, String> {
+fn read(open: &mut impl Read, buffer: &mut [u8]) -> Result<PortEvent, String> {
     match open.read(buffer) {
         Ok(0) => Err("the other side closed the link".to_owned()),
-        Ok(count) => Ok(Received::Bytes(count)),
+        Ok(count) => Ok(PortEvent::Bytes(count)),
         Err(error) => match error.kind() {
             io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut | io::ErrorKind::Interrupted => {
-                Ok(Received::Nothing)
+                Ok(PortEvent::Nothing)
             }
             _ => Err(error.to_string()),
         },
     }
 }
 
-fn pause(error: &io::Error) -> Received {
+fn pause(error: &io::Error) -> PortEvent {
     let waited = matches!(
         error.kind(),
         io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut
@@ -387,7 +387,7 @@ fn pause(error: &io::Error) -> Received {
     if !waited {
         thread::sleep(WAIT);
     }
-    Received::Nothing
+    PortEvent::Nothing
 }
 
 /// Tries to open a closed port again, at intervals.
@@ -395,16 +395,16 @@ fn again<T>(
     tried: &mut Instant,
     open: impl FnOnce() -> io::Result<T>,
     place: &mut Option<T>,
-) -> Received {
+) -> PortEvent {
     if tried.elapsed() < RETRY {
         thread::sleep(WAIT);
-        return Received::Nothing;
+        return PortEvent::Nothing;
     }
     *tried = Instant::now();
     *place = open().ok();
     match place {
-        Some(_) => Received::Opened,
-        None => Received::Nothing,
+        Some(_) => PortEvent::Opened,
+        None => PortEvent::Nothing,
     }
 }
 
@@ -474,7 +474,7 @@ mod tests {
         let most: usize = most.trim().parse().unwrap();
         for endpoint in ["udpin:127.0.0.1:0", "udpout:127.0.0.1:9"] {
             let port = Port::open(&endpoint.parse().unwrap(), true).unwrap_or_else(|_| panic!());
-            let Kind::Udp { socket, .. } = &port.kind else {
+            let PortState::Udp { socket, .. } = &port.kind else {
                 panic!("{endpoint}");
             };
             let bytes = buffer(socket).unwrap();
@@ -497,10 +497,10 @@ mod tests {
         let mut port =
             Port::open(&endpoint, true).unwrap_or_else(|_| panic!("{path} does not open"));
         let mut buffer = [0; 16];
-        assert!(matches!(port.receive(&mut buffer), Received::Nothing));
+        assert!(matches!(port.receive(&mut buffer), PortEvent::Nothing));
         // Bytes are unchanged: line ends are neither awaited nor converted, and nothing is echoed.
         rustix::io::write(&other, b"\xfd\n\r\x03\x04").unwrap();
-        assert!(matches!(port.receive(&mut buffer), Received::Bytes(5)));
+        assert!(matches!(port.receive(&mut buffer), PortEvent::Bytes(5)));
         assert_eq!(&buffer[..5], b"\xfd\n\r\x03\x04");
         port.send(b"\xfe\n\x11");
         assert_eq!(rustix::io::read(&other, &mut buffer).unwrap(), 3);
@@ -508,10 +508,10 @@ mod tests {
         // The other end is disconnected.
         drop(other);
         let closed = (0..10).find_map(|_| match port.receive(&mut buffer) {
-            Received::Closed(why) => Some(why),
+            PortEvent::Closed(why) => Some(why),
             _ => None,
         });
         assert!(closed.is_some());
-        assert!(matches!(port.receive(&mut buffer), Received::Nothing));
+        assert!(matches!(port.receive(&mut buffer), PortEvent::Nothing));
     }
 }

@@ -7,7 +7,7 @@ use fuzzy::drawing::{bar, visible};
 
 use super::{
     lines,
-    session::{Event, Session, View},
+    session::{Event, Session, VehicleView},
 };
 use flagred_report::words::level_style;
 
@@ -61,7 +61,7 @@ impl Screen {
     /// the latest events fill the remaining rows.
     pub(crate) fn frame(
         &self,
-        view: Option<&View<'_>>,
+        view: Option<&VehicleView<'_>>,
         estimator: &Estimator,
         (columns, rows): (usize, usize),
     ) -> String {
@@ -133,7 +133,7 @@ fn wrapped<'a>(lines: impl Iterator<Item = &'a str>, columns: usize) -> Vec<Stri
     all
 }
 
-fn state(view: &View<'_>, estimator: &Estimator) -> String {
+fn state(view: &VehicleView<'_>, estimator: &Estimator) -> String {
     let activity = match (view.is_armed, view.is_in_air) {
         _ if view.link_lost => "LINK LOST",
         (_, true) => "in the air",

@@ -11,24 +11,24 @@ use flagred::{
 };
 use flagred_flightlog::{
     PulseRange,
-    mavlink::{MOTOR_RATE_HZ, News, Packet, Sender, Telemetry, Version, vehicle_of},
+    mavlink::{MOTOR_RATE_HZ, Packet, Sender, Telemetry, TelemetryChange, Version, vehicle_of},
 };
 
 mod event;
 mod history;
-mod speech;
-mod tracked;
+mod tracked_vehicle;
 mod trust;
+mod watch_sender;
 
 use super::voice;
-pub(crate) use event::{End, Event, FlightSummary, Lost, Silent, StopReason};
+pub(crate) use event::{ContactLoss, End, Event, FlightSummary, SilentSource, StopReason};
 use flagred_report::finding::numbered;
-use history::Received;
-use speech::Speech;
-pub(crate) use tracked::View;
-use tracked::{Tracked, Watch, tell};
+use history::ReceivedSample;
+pub(crate) use tracked_vehicle::VehicleView;
+use tracked_vehicle::{AssessedVehicle, TrackedVehicle, tell};
 use trust::{Candidates, Proof, doubt_of};
-pub(crate) use trust::{Doubt, Doubts, Source, may_be_multirotor};
+pub(crate) use trust::{Source, UntrustedCounts, UntrustedPacket, may_be_multirotor};
+use watch_sender::WatchSender;
 
 /// Seconds between two heartbeats.
 const HEARTBEAT_S: f64 = 1.0;
@@ -43,7 +43,7 @@ const SYSTEMS: usize = 256;
 
 /// The output of a session.
 #[derive(Default)]
-pub(crate) struct Out {
+pub(crate) struct SessionOutput {
     pub(crate) events: Vec<Event>,
     /// Packets to send, in order.
     pub(crate) packets: Vec<Vec<u8>>,
@@ -52,10 +52,10 @@ pub(crate) struct Out {
 /// Follows the first vehicle on a link that proves to be one.
 pub(crate) struct Session<'e> {
     estimator: &'e Estimator,
-    speech: Speech,
-    tracked: Option<Tracked>,
+    watch_sender: WatchSender,
+    tracked: Option<TrackedVehicle>,
     candidates: Candidates,
-    doubts: Doubts,
+    doubts: UntrustedCounts,
     others: Vec<u8>,
     heartbeat_s: Option<f64>,
     /// The worst verdict of the flights so far.
@@ -77,10 +77,10 @@ impl<'e> Session<'e> {
     ) -> Session<'e> {
         Session {
             estimator,
-            speech: Speech::new(sender, insists),
+            watch_sender: WatchSender::new(sender, insists),
             tracked: None,
             candidates: Candidates::default(),
-            doubts: Doubts::default(),
+            doubts: UntrustedCounts::default(),
             others: Vec::new(),
             heartbeat_s: None,
             worst: Verdict::NotAvailable(Reason::NoFlight),
@@ -106,7 +106,7 @@ impl<'e> Session<'e> {
         now_s: f64,
         source: Source,
         packet: &Packet<'_>,
-        out: &mut Out,
+        out: &mut SessionOutput,
     ) -> bool {
         // Only the sender of an unknown message can be identified. The message is counted and recorded.
         if packet.sound.is_none() {
@@ -125,22 +125,23 @@ impl<'e> Session<'e> {
         let Some(tracked) = &mut self.tracked else {
             return false;
         };
-        self.speech
+        self.watch_sender
             .hear(now_s, packet, echoes(&tracked.telemetry), out);
         tracked.count(packet);
         tracked.hear(now_s, out);
         let jumps = tracked.telemetry.clock_jumps();
         let news = tracked.telemetry.receive(packet, now_s);
         let jumps = tracked.telemetry.clock_jumps() - jumps;
-        if self.doubts.add(Doubt::ClockJump, jumps) {
-            out.events.push(told(Doubt::ClockJump, source, packet));
+        if self.doubts.add(UntrustedPacket::ClockJump, jumps) {
+            out.events
+                .push(told(UntrustedPacket::ClockJump, source, packet));
         }
         match news {
-            News::Rebooted => {
+            TelemetryChange::Rebooted => {
                 let verdict = tracked.start_anew(now_s, out);
                 add(&mut self.worst, verdict);
             }
-            News::Commands { t_s } => {
+            TelemetryChange::Commands { t_s } => {
                 if !std::mem::replace(&mut tracked.is_proved, true) {
                     let system = packet.system;
                     out.events.push(Event::Locked {
@@ -167,26 +168,26 @@ impl<'e> Session<'e> {
     pub(crate) fn is_doubtful(&self, packet: &Packet<'_>) -> bool {
         let tracked = self.tracked.as_ref();
         match doubt_of(packet) {
-            Some(Doubt::OtherComponent) => true,
+            Some(UntrustedPacket::OtherComponent) => true,
             Some(_) => tracked.is_some_and(|it| it.telemetry.system() == packet.system),
             None => false,
         }
     }
 
     /// The numbers of packets that were not trusted.
-    pub(crate) fn doubts(&self) -> Doubts {
+    pub(crate) fn doubts(&self) -> UntrustedCounts {
         self.doubts
     }
 
     fn is_followed(&self, source: Source, packet: &Packet<'_>) -> bool {
-        let is_it = |tracked: &Tracked| {
+        let is_it = |tracked: &TrackedVehicle| {
             (tracked.telemetry.system(), tracked.source) == (packet.system, source)
         };
         packet.component == 1 && self.tracked.as_ref().is_some_and(is_it)
     }
 
     /// Counts a doubtful packet of the vehicle's system from another sender, except a second sender while the vehicle is silent.
-    fn doubt(&mut self, now_s: f64, source: Source, packet: &Packet<'_>, out: &mut Out) {
+    fn doubt(&mut self, now_s: f64, source: Source, packet: &Packet<'_>, out: &mut SessionOutput) {
         let Some(tracked) = &self.tracked else {
             return;
         };
@@ -194,10 +195,10 @@ impl<'e> Session<'e> {
             return;
         }
         if packet.component != 1 {
-            self.speech.hear(now_s, packet, false, out);
+            self.watch_sender.hear(now_s, packet, false, out);
         }
         let doubt = doubt_of(packet);
-        let is_other_end = doubt == Some(Doubt::SecondSender) && tracked.is_silent();
+        let is_other_end = doubt == Some(UntrustedPacket::SecondSender) && tracked.is_silent();
         if let Some(doubt) = doubt.filter(|_| !is_other_end)
             && self.doubts.add(doubt, 1)
         {
@@ -206,14 +207,14 @@ impl<'e> Session<'e> {
     }
 
     /// Performs the periodic work that does not depend on packets. Must be called often.
-    pub(crate) fn tick(&mut self, now_s: f64, out: &mut Out) {
+    pub(crate) fn tick(&mut self, now_s: f64, out: &mut SessionOutput) {
         self.ask(now_s, out);
         self.beat(now_s, out);
         let Some(tracked) = &mut self.tracked else {
             return;
         };
         let before = tracked.level();
-        let verdict = tracked.set_up(now_s, self.speech.asks(), self.estimator, out);
+        let verdict = tracked.set_up(now_s, self.watch_sender.asks(), self.estimator, out);
         let to = tracked.address();
         if let Some(watch) = tracked.watch.as_mut().filter(|watch| watch.is_flying)
             && let Some(update) = watch.latest
@@ -225,7 +226,7 @@ impl<'e> Session<'e> {
             tell_level(
                 now_s,
                 to,
-                &mut self.speech,
+                &mut self.watch_sender,
                 (watch, &update, before),
                 finding,
                 out,
@@ -234,13 +235,14 @@ impl<'e> Session<'e> {
         if let Some(Verdict::NotAvailable(_)) = &verdict {
             self.unknown_part = verdict.clone();
         }
-        self.speech.tick(now_s, tracked.telemetry.system(), out);
+        self.watch_sender
+            .tick(now_s, tracked.telemetry.system(), out);
         tracked.listen(now_s, out);
         add(&mut self.worst, verdict);
     }
 
     /// Ends the watch and the current flight. Returns the worst verdict of the flights.
-    pub(crate) fn finish(&mut self, out: &mut Out) -> Verdict {
+    pub(crate) fn finish(&mut self, out: &mut SessionOutput) -> Verdict {
         let verdict = self
             .tracked
             .as_mut()
@@ -265,7 +267,13 @@ impl<'e> Session<'e> {
     }
 
     /// Considers the sender of a packet as the vehicle to follow, and returns whether it is.
-    fn consider(&mut self, now_s: f64, source: Source, packet: &Packet<'_>, out: &mut Out) -> bool {
+    fn consider(
+        &mut self,
+        now_s: f64,
+        source: Source,
+        packet: &Packet<'_>,
+        out: &mut SessionOutput,
+    ) -> bool {
         let is_open =
             (self.tracked.as_ref()).is_none_or(|tracked| !tracked.is_proved || tracked.is_silent());
         if is_open {
@@ -303,7 +311,7 @@ impl<'e> Session<'e> {
                 self.candidates.clear();
                 return true;
             }
-            let asked_in_vain = self.speech.asks() && now_s - tracked.found_s >= PROOF_S;
+            let asked_in_vain = self.watch_sender.asks() && now_s - tracked.found_s >= PROOF_S;
             let gives_way = match tracked.is_proved {
                 true => now_s - tracked.heard_s >= GONE_S,
                 false => tracked.is_silent() || proof == Proof::Commands || asked_in_vain,
@@ -311,7 +319,7 @@ impl<'e> Session<'e> {
             if !gives_way {
                 return false;
             }
-            let verdict = tracked.end_flight(End::Lost(Lost::Link), out);
+            let verdict = tracked.end_flight(End::Lost(ContactLoss::Link), out);
             add(&mut self.worst, verdict);
             let system = tracked.telemetry.system();
             out.events.push(Event::GivenUp { system });
@@ -319,9 +327,9 @@ impl<'e> Session<'e> {
         let telemetry = Telemetry::new(packet, vehicle.clone())
             .with_range(self.range)
             .with_signals(&self.estimator.profile().signals());
-        self.tracked = Some(Tracked::new(telemetry, source, now_s, self.history));
+        self.tracked = Some(TrackedVehicle::new(telemetry, source, now_s, self.history));
         self.candidates.clear();
-        self.speech.forget();
+        self.watch_sender.forget();
         self.heartbeat_s = None;
         out.events.push(Event::Found { system, vehicle });
         true
@@ -335,9 +343,9 @@ impl<'e> Session<'e> {
         is_new
     }
 
-    fn ask(&mut self, now_s: f64, out: &mut Out) {
+    fn ask(&mut self, now_s: f64, out: &mut SessionOutput) {
         if let Some(tracked) = &mut self.tracked
-            && self.speech.asks()
+            && self.watch_sender.asks()
             && !tracked.is_silent()
         {
             let mut messages = Vec::new();
@@ -347,7 +355,7 @@ impl<'e> Session<'e> {
                 .due(now_s, &tracked.telemetry, lost_share, &mut messages);
             let to = tracked.address();
             for message in &messages {
-                self.speech.ask(to, message, out);
+                self.watch_sender.ask(to, message, out);
             }
             if let Some(rate_hz) = tracked.slowed_hz(now_s) {
                 let by = tracked.telemetry.rate_asker();
@@ -359,13 +367,13 @@ impl<'e> Session<'e> {
                 });
                 if tracked.telemetry.is_in_air() {
                     let text = voice::status(Level::Warn, &voice::slowed(rate_hz, by));
-                    self.speech.warn(now_s, to, &text, out);
+                    self.watch_sender.warn(now_s, to, &text, out);
                 }
             }
         }
     }
 
-    fn beat(&mut self, now_s: f64, out: &mut Out) {
+    fn beat(&mut self, now_s: f64, out: &mut SessionOutput) {
         let due = self
             .heartbeat_s
             .is_none_or(|sent_s| now_s - sent_s >= HEARTBEAT_S);
@@ -374,19 +382,20 @@ impl<'e> Session<'e> {
             let to = self
                 .tracked
                 .as_ref()
-                .map_or((Version::V2, voice::NOBODY), Tracked::address);
-            self.speech.say(now_s, to, &voice::heartbeat(now_s), out);
+                .map_or((Version::V2, voice::NOBODY), TrackedVehicle::address);
+            self.watch_sender
+                .say(now_s, to, &voice::heartbeat(now_s), out);
         }
     }
 
-    fn assess(&mut self, now_s: f64, t_s: f64, out: &mut Out) {
+    fn assess(&mut self, now_s: f64, t_s: f64, out: &mut SessionOutput) {
         let Some(tracked) = &mut self.tracked else {
             return;
         };
         let to = tracked.address();
         let in_air = tracked.telemetry.is_in_air();
         let reported = tracked.telemetry.reported_in_air(now_s);
-        let received = Received {
+        let received = ReceivedSample {
             t_s,
             in_air: reported,
             pulses: tracked.telemetry.pulses(),
@@ -403,7 +412,7 @@ impl<'e> Session<'e> {
         if watch.commands_lost {
             watch.commands_lost = false;
             out.events.push(Event::Back {
-                what: Silent::MotorCommands,
+                what: SilentSource::MotorCommands,
                 after_s: now_s - watch.commands_s,
             });
         }
@@ -441,7 +450,7 @@ impl<'e> Session<'e> {
             tell_level(
                 now_s,
                 to,
-                &mut self.speech,
+                &mut self.watch_sender,
                 (watch, &update, before),
                 finding,
                 out,
@@ -451,7 +460,7 @@ impl<'e> Session<'e> {
             .risk_sent_s
             .is_none_or(|sent_s| now_s - sent_s >= RISK_S);
         if due
-            && self.speech.speaks()
+            && self.watch_sender.speaks()
             && let Ok(estimate) = update.risk
             && let Some(elevated_pct) = update.elevated_risk_pct
         {
@@ -460,15 +469,15 @@ impl<'e> Session<'e> {
                 (voice::RISK, estimate.risk_pct),
                 (voice::ELEVATED, elevated_pct),
             ] {
-                self.speech
+                self.watch_sender
                     .say(now_s, to, &voice::value(t_s, name, value), out);
             }
         }
     }
 
     /// The current state, for a screen.
-    pub(crate) fn view(&self) -> Option<View<'_>> {
-        self.tracked.as_ref().map(Tracked::view)
+    pub(crate) fn view(&self) -> Option<VehicleView<'_>> {
+        self.tracked.as_ref().map(TrackedVehicle::view)
     }
 }
 
@@ -476,10 +485,10 @@ impl<'e> Session<'e> {
 fn tell_level(
     now_s: f64,
     to: (Version, u8),
-    speech: &mut Speech,
-    (watch, update, before): (&Watch, &Update, Option<Level>),
+    watch_sender: &mut WatchSender,
+    (watch, update, before): (&AssessedVehicle, &Update, Option<Level>),
     finding: Option<Finding>,
-    out: &mut Out,
+    out: &mut SessionOutput,
 ) {
     let finding = finding.map(|finding| numbered(&finding, &watch.setup.motors));
     let words = finding
@@ -492,7 +501,7 @@ fn tell_level(
         ),
         None => (Level::Warn, voice::unknown(before.unwrap_or(Level::Warn))),
     };
-    speech.warn(now_s, to, &voice::status(severity, &text), out);
+    watch_sender.warn(now_s, to, &voice::status(severity, &text), out);
     let (code, advice) = words.map(|words| (words.code, words.advice)).unzip();
     out.events.push(Event::Level {
         t_s: update.t_s,
@@ -513,7 +522,7 @@ fn echoes(telemetry: &Telemetry) -> bool {
 }
 
 /// Converts a doubt to an event.
-fn told(what: Doubt, source: Source, packet: &Packet<'_>) -> Event {
+fn told(what: UntrustedPacket, source: Source, packet: &Packet<'_>) -> Event {
     Event::Doubt {
         what,
         system: packet.system,

@@ -179,7 +179,7 @@ pub(crate) fn unknown(last: Level) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use flagred_flightlog::mavlink::{Next, Sender, Version, next_packet};
+    use flagred_flightlog::mavlink::{PacketScan, Sender, Version, next_packet};
 
     /// The text may contain names from rule sets.
     #[test]
@@ -200,7 +200,7 @@ mod tests {
         for length in [0, 30, 49, 50, 51, 90] {
             let text = "x".repeat(length);
             let bytes = Sender::new(191).packet(Version::V1, 1, &status(Level::Fail, &text));
-            let Next::Packet(packet) = next_packet(&bytes) else {
+            let PacketScan::Packet(packet) = next_packet(&bytes) else {
                 panic!("{bytes:?}");
             };
             let Some(MavMessage::STATUSTEXT(read)) = packet.message() else {

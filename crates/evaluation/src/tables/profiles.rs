@@ -2,7 +2,7 @@
 
 use super::{Table, column, number, percent, seen};
 use crate::{
-    alarms::{Alarms, Figure, Needless, Upsets},
+    alarms::{Alarms, Figure, NeedlessAlarms, Upsets},
     scores::ProfileScores,
     warnings::Warnings,
 };
@@ -67,7 +67,7 @@ pub(super) fn alarms(name: &str, alarms: &Alarms) -> Table {
     }
 }
 
-fn needless(name: String, of: &Needless) -> Vec<String> {
+fn needless(name: String, of: &NeedlessAlarms) -> Vec<String> {
     let figure = |figure: Option<Figure>, scale: f64| {
         let Some(Figure { value, interval }) = figure else {
             return "-".to_owned();

@@ -5,7 +5,7 @@ use std::{io::BufRead as _, ops::RangeInclusive};
 use super::{BOM, Layout, problem};
 use crate::error::io_error;
 use crate::flight::whole_range;
-use crate::geometry::{Declared, tables};
+use crate::geometry::{DeclaredLayout, tables};
 use crate::input::Input;
 use crate::outputs::{Bounds, FRACTIONS, PULSES_US};
 use crate::{Flight, Intervals, Range, ReadError, VehicleKind, identity};
@@ -104,7 +104,7 @@ pub(super) fn apply_header(
     header: Vec<HeaderLine>,
     layout: &Layout,
     span_s: RangeInclusive<f64>,
-) -> Result<Declared, ReadError> {
+) -> Result<DeclaredLayout, ReadError> {
     let value = |key: &str| number_of(&header, key);
     let line_of = |key: &str| {
         let entry = header.iter().find(|entry| entry.key == key);
@@ -276,7 +276,7 @@ pub(super) fn apply_header(
 
 /// The motor layout by `motorN_factors` of every motor, by `frame`, or by `frame_class` and
 /// `frame_type`.
-fn geometry_of(header: &[HeaderLine], motors: usize) -> Result<Declared, ReadError> {
+fn geometry_of(header: &[HeaderLine], motors: usize) -> Result<DeclaredLayout, ReadError> {
     let entry = |key: &str| header.iter().find(|entry| entry.key == key);
     let frame = entry("frame")
         .map(|entry| {
@@ -313,7 +313,7 @@ fn geometry_of(header: &[HeaderLine], motors: usize) -> Result<Declared, ReadErr
         })
         .collect::<Result<Vec<_>, _>>()?;
     if motors > 0 && factors.len() == motors {
-        return Ok(Declared::Factors {
+        return Ok(DeclaredLayout::Factors {
             frame: frame.map(|(name, _)| name),
             factors,
             source: "header motorN_factors".into(),
@@ -321,7 +321,7 @@ fn geometry_of(header: &[HeaderLine], motors: usize) -> Result<Declared, ReadErr
     }
     let number = |key: &str| entry(key)?.value.parse::<i64>().ok();
     Ok(match (frame, number("frame_class")) {
-        (Some((name, (class, kind))), _) => Declared::Frame {
+        (Some((name, (class, kind))), _) => DeclaredLayout::Frame {
             class,
             kind,
             source: format!("header frame `{name}`"),
@@ -329,12 +329,12 @@ fn geometry_of(header: &[HeaderLine], motors: usize) -> Result<Declared, ReadErr
         (None, Some(class)) => {
             let kind = number("frame_type");
             let text = kind.map_or(String::new(), |kind| format!(", frame_type {kind}"));
-            Declared::Frame {
+            DeclaredLayout::Frame {
                 class,
                 kind,
                 source: format!("header frame_class {class}{text}"),
             }
         }
-        (None, None) => Declared::Nothing,
+        (None, None) => DeclaredLayout::Nothing,
     })
 }

@@ -12,7 +12,7 @@ use csv::{ByteRecord, ReaderBuilder};
 
 use self::header::{apply_header, read_header};
 use self::layout::Layout;
-use self::rows::Rows;
+use self::rows::RowCollector;
 use crate::error::io_error;
 use crate::geometry;
 use crate::input::Input;
@@ -72,7 +72,7 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> Result<Flight, R
         .flexible(true)
         .has_headers(false)
         .comment(Some(b'#'))
-        .from_reader(Bounded {
+        .from_reader(BoundedReader {
             input: &mut *input,
             left: &left,
         });
@@ -90,7 +90,7 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> Result<Flight, R
         ));
     }
     let layout = Layout::new(&record, lines + 1, options)?;
-    let mut rows = Rows::new(&layout);
+    let mut rows = RowCollector::new(&layout);
     let mut next = ByteRecord::new();
     let mut end = reader.position().byte();
     record = ByteRecord::new();
@@ -181,12 +181,12 @@ fn too_long(line: u64) -> ReadError {
 }
 
 /// Limits the bytes that are read for a row, which otherwise could fill the memory.
-struct Bounded<'a, 'r> {
+struct BoundedReader<'a, 'r> {
     input: &'a mut Input<'r>,
     left: &'a Cell<usize>,
 }
 
-impl Read for Bounded<'_, '_> {
+impl Read for BoundedReader<'_, '_> {
     fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
         if self.left.get() == 0 {
             return Err(io::ErrorKind::InvalidData.into());

@@ -22,7 +22,7 @@ fn is_far_outside(command: f64) -> bool {
     !command.is_nan() && !(-MOST_OUTSIDE..=1.0 + MOST_OUTSIDE).contains(&command)
 }
 
-pub(super) struct Rows {
+pub(super) struct RowCollector {
     pub(super) commands: Commands,
     pub(super) series: Series,
     air_changes: Vec<(f64, bool)>,
@@ -63,7 +63,7 @@ struct Pulses {
     first: Option<(u64, f64)>,
 }
 
-impl Rows {
+impl RowCollector {
     pub(super) fn new(layout: &Layout) -> Self {
         let kept = layout.signals.iter().filter(|(.., keep)| *keep);
         let labels = kept.map(|(_, name, _)| Label {

@@ -2,13 +2,13 @@
 
 use super::format::{Cells, Column, FMT, Format};
 use super::landing::{Landing, air_from_events, boots_in_air};
-use super::plan::{Kind, MOTORS, Part, Role};
+use super::plan::{MOTORS, MessageRole, MessageType, ResolvedSource};
 use super::signals::SPECS;
-use super::untimed::{Kept, Untimed};
+use super::untimed::{PendingMessage, UntimedMessages};
 use crate::ardupilot::{self, Mode};
-use crate::clock::{Checked, Clock};
+use crate::clock::{Clock, TimestampDecision};
 use crate::field::vector_length;
-use crate::geometry::{self, Declared};
+use crate::geometry::{self, DeclaredLayout};
 use crate::outputs::Outputs;
 use crate::parameters::Parameters;
 use crate::signal::{Label, preferred};
@@ -16,12 +16,12 @@ use crate::{Event, Flight, Options, Report, Series, VehicleKind, utc};
 
 pub(super) struct Collector<'o> {
     options: &'o Options,
-    kinds: Vec<Option<Kind>>,
+    kinds: Vec<Option<MessageType>>,
     /// The number of motors that have a column of their own in MOT messages (firmware before 3.2).
     named_motors: u16,
     clock: Clock,
-    waiting: Option<Kept>,
-    untimed: Untimed,
+    waiting: Option<PendingMessage>,
+    untimed: UntimedMessages,
     redefine: bool,
     pub(super) report: Report,
     parameters: Parameters,
@@ -44,7 +44,7 @@ impl<'o> Collector<'o> {
             named_motors: 0,
             clock: Clock::default(),
             waiting: None,
-            untimed: Untimed::default(),
+            untimed: UntimedMessages::default(),
             redefine: true,
             report: Report::default(),
             parameters: Parameters::default(),
@@ -61,7 +61,7 @@ impl<'o> Collector<'o> {
 
     /// Whether messages of this type contain anything that is read.
     pub(super) fn wants(&self, type_id: u8) -> bool {
-        kind(&self.kinds, type_id).is_some_and(|kind| !matches!(kind.role, Role::Nothing))
+        kind(&self.kinds, type_id).is_some_and(|kind| !matches!(kind.role, MessageRole::Nothing))
     }
 
     /// Checks that the fields of a text line match their definition in number and type.
@@ -76,7 +76,7 @@ impl<'o> Collector<'o> {
         let is_number = |(column, cell): (&Column, &&str)| {
             matches!(column.kind, b'n' | b'N' | b'Z' | b'M' | b'a') || cell.parse::<f64>().is_ok()
         };
-        let wanted = !matches!(kind.role, Role::Nothing);
+        let wanted = !matches!(kind.role, MessageRole::Nothing);
         if wanted && !columns.iter().zip(cells).all(is_number) {
             return Err("with a field that is not a number");
         }
@@ -103,10 +103,10 @@ impl<'o> Collector<'o> {
         }
         let type_id = usize::from(format.type_id);
         let known = &mut self.series;
-        let kind = Kind::new(format, self.options, |name, labels| {
+        let kind = MessageType::new(format, self.options, |name, labels| {
             series_of(known, name, labels)
         });
-        if let Role::Outputs(label, columns) = &kind.role {
+        if let MessageRole::Outputs(label, columns) = &kind.role {
             match kind.format.name.as_str() {
                 MOTORS => self.named_motors = columns.len() as u16,
                 _ => self.label = label,
@@ -132,7 +132,7 @@ impl<'o> Collector<'o> {
             return;
         }
         // Parameters need no time, and may carry the time of another thread.
-        if let Role::Parameter { name, value } = kind.role {
+        if let MessageRole::Parameter { name, value } = kind.role {
             let name = cells.text(&kind.format, name);
             let value = cells.number(&kind.format, value);
             if let Some((name, value)) = name.zip(value) {
@@ -142,8 +142,10 @@ impl<'o> Collector<'o> {
         }
         let Some((column, unit)) = kind.time else {
             // An event without a time is useless; the commands are the better source.
-            if !matches!(kind.role, Role::Event(_) | Role::Arm(_) | Role::Nothing)
-                && !self.untimed.keep(type_id, cells)
+            if !matches!(
+                kind.role,
+                MessageRole::Event(_) | MessageRole::Arm(_) | MessageRole::Nothing
+            ) && !self.untimed.keep(type_id, cells)
             {
                 self.report.bad("messages without a time");
             }
@@ -153,20 +155,20 @@ impl<'o> Collector<'o> {
             return self.report.bad("a message without a time");
         };
         match self.clock.check(t_s) {
-            Checked::At(t_s) => self.take_timed(type_id, cells, t_s),
-            Checked::Wait => self.wait(type_id, cells),
-            Checked::Confirmed(first_s, t_s) => {
+            TimestampDecision::At(t_s) => self.take_timed(type_id, cells, t_s),
+            TimestampDecision::Wait => self.wait(type_id, cells),
+            TimestampDecision::Confirmed(first_s, t_s) => {
                 self.untimed.confirm_first(first_s);
                 if let Some(waiting) = self.waiting.take() {
                     waiting.give(|type_id, cells| self.take(type_id, cells, first_s));
                 }
                 self.take_timed(type_id, cells, t_s);
             }
-            Checked::Refuted(t_s) => {
+            TimestampDecision::Refuted(t_s) => {
                 self.refute();
                 self.take_timed(type_id, cells, t_s);
             }
-            Checked::RefutedWait => {
+            TimestampDecision::RefutedWait => {
                 self.refute();
                 self.wait(type_id, cells);
             }
@@ -174,7 +176,7 @@ impl<'o> Collector<'o> {
     }
 
     fn wait(&mut self, type_id: u8, cells: Cells<'_>) {
-        self.waiting = Some(Kept::new(type_id, cells));
+        self.waiting = Some(PendingMessage::new(type_id, cells));
         if self.clock.now_s().is_none() {
             self.untimed.mark_first();
         }
@@ -201,19 +203,19 @@ impl<'o> Collector<'o> {
         self.redefine = false;
         let number = |column| cells.number(format, column);
         match &kind.role {
-            Role::Nothing | Role::Parameter { .. } => {}
-            Role::Text(column) => {
+            MessageRole::Nothing | MessageRole::Parameter { .. } => {}
+            MessageRole::Text(column) => {
                 if let Some(text) = cells.text(format, *column) {
                     self.report.text(&mut self.texts, Event::new(t_s, text));
                 }
             }
-            Role::Event(column) => {
+            MessageRole::Event(column) => {
                 if let Some(landing) = number(*column).and_then(Landing::of) {
                     self.report.change();
                     self.events.push((t_s, landing));
                 }
             }
-            Role::Arm(column) => {
+            MessageRole::Arm(column) => {
                 let landing = match number(*column) {
                     Some(0.0) => Landing::Disarmed,
                     Some(_) => Landing::Armed,
@@ -222,7 +224,7 @@ impl<'o> Collector<'o> {
                 self.report.change();
                 self.events.push((t_s, landing));
             }
-            Role::Mode { number: id, name } => {
+            MessageRole::Mode { number: id, name } => {
                 let id = id.and_then(number).or_else(|| number(*name));
                 let mode = match id {
                     Some(id) => Mode::Number(id as i64),
@@ -230,7 +232,7 @@ impl<'o> Collector<'o> {
                 };
                 self.report.mode(&mut self.modes, (t_s, mode));
             }
-            Role::Outputs(_, columns) => {
+            MessageRole::Outputs(_, columns) => {
                 let values = columns
                     .iter()
                     .filter_map(|(column, output)| Some((*output, number(*column)?)));
@@ -238,18 +240,18 @@ impl<'o> Collector<'o> {
                 let dropped = self.outputs.add(t_s, first, values);
                 self.report.row(columns.len(), dropped);
             }
-            Role::Series(index, parts) => {
+            MessageRole::Series(index, parts) => {
                 if self.utc_at_zero_s.is_none() && format.name == "GPS" {
                     self.utc_at_zero_s = gps_utc_s(format, &cells).map(|utc_s| utc_s - t_s);
                 }
                 let values = parts.iter().map(|part| match part {
-                    Part::Field { column, scale } => {
+                    ResolvedSource::Field { column, scale } => {
                         number(*column).map_or(f64::NAN, |value| value * scale)
                     }
-                    Part::Position(column) => number(*column)
+                    ResolvedSource::Position(column) => number(*column)
                         .filter(|degrees| *degrees != 0.0)
                         .unwrap_or(f64::NAN),
-                    Part::Length(columns) => {
+                    ResolvedSource::Length(columns) => {
                         vector_length(columns.iter().map(|&column| number(column)))
                             .unwrap_or(f64::NAN)
                     }
@@ -333,14 +335,14 @@ impl<'o> Collector<'o> {
         flight.utc_at_zero_s = self.utc_at_zero_s;
         flight.boots_s = self.clock.boots_s().to_vec();
         flight.report = self.report;
-        let declared = Declared::of_ardupilot(&self.parameters, &flight.vehicle);
+        let declared = DeclaredLayout::of_ardupilot(&self.parameters, &flight.vehicle);
         flight.geometry = geometry::find(&flight, &declared);
         flight
     }
 }
 
 /// The definition and use of a message type.
-fn kind(kinds: &[Option<Kind>], type_id: u8) -> Option<&Kind> {
+fn kind(kinds: &[Option<MessageType>], type_id: u8) -> Option<&MessageType> {
     kinds.get(usize::from(type_id))?.as_ref()
 }
 

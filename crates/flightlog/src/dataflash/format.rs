@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::field::{Kind, NumericField};
+use crate::field::{NumberType, NumericField};
 
 /// Type of the FMT records themselves.
 pub(crate) const FMT: u8 = 128;
@@ -162,24 +162,24 @@ impl Cells<'_> {
 }
 
 /// The number type of a letter, and its unit.
-fn number_of(kind: u8) -> (Kind, f64) {
+fn number_of(kind: u8) -> (NumberType, f64) {
     match kind {
-        b'b' => (Kind::I8, 1.0),
-        b'h' => (Kind::I16, 1.0),
-        b'H' => (Kind::U16, 1.0),
-        b'c' => (Kind::I16, 0.01),
-        b'C' => (Kind::U16, 0.01),
-        b'i' => (Kind::I32, 1.0),
-        b'I' => (Kind::U32, 1.0),
-        b'e' => (Kind::I32, 0.01),
-        b'E' => (Kind::U32, 0.01),
-        b'L' => (Kind::I32, 1e-7),
-        b'f' => (Kind::F32, 1.0),
-        b'd' => (Kind::F64, 1.0),
-        b'q' => (Kind::I64, 1.0),
-        b'Q' => (Kind::U64, 1.0),
+        b'b' => (NumberType::I8, 1.0),
+        b'h' => (NumberType::I16, 1.0),
+        b'H' => (NumberType::U16, 1.0),
+        b'c' => (NumberType::I16, 0.01),
+        b'C' => (NumberType::U16, 0.01),
+        b'i' => (NumberType::I32, 1.0),
+        b'I' => (NumberType::U32, 1.0),
+        b'e' => (NumberType::I32, 0.01),
+        b'E' => (NumberType::U32, 0.01),
+        b'L' => (NumberType::I32, 1e-7),
+        b'f' => (NumberType::F32, 1.0),
+        b'd' => (NumberType::F64, 1.0),
+        b'q' => (NumberType::I64, 1.0),
+        b'Q' => (NumberType::U64, 1.0),
         // B, M, and types that are not numbers: see `Cells::number`.
-        _ => (Kind::U8, 1.0),
+        _ => (NumberType::U8, 1.0),
     }
 }
 

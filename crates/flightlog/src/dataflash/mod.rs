@@ -109,20 +109,20 @@ impl<'o> Scanner<'o> {
         let found = self.record(bytes);
         let report = &mut self.collector.report;
         match found {
-            Found::Record { type_id, payload } => {
+            ScanResult::Record { type_id, payload } => {
                 report.messages += 1;
                 if self.wanted[usize::from(type_id)] {
                     self.take(type_id, payload);
                 }
                 3 + payload.len()
             }
-            Found::Cut => {
+            ScanResult::Cut => {
                 report.truncated = true;
                 report.because(|| "the log ends inside a message".into());
                 report.skipped_bytes += bytes.len() as u64;
                 bytes.len()
             }
-            Found::Damage { skip } => {
+            ScanResult::Damage { skip } => {
                 let skip = if at_end { skip } else { skip.min(sure) };
                 report.skipped_bytes += skip as u64;
                 report.because(|| "bytes that belong to no message".into());
@@ -146,29 +146,29 @@ impl<'o> Scanner<'o> {
     }
 
     /// Classifies the start of `bytes`.
-    fn record<'a>(&self, bytes: &'a [u8]) -> Found<'a> {
+    fn record<'a>(&self, bytes: &'a [u8]) -> ScanResult<'a> {
         let length = self.length(bytes);
         if bytes.len() < 3 && HEAD.starts_with(&bytes[..bytes.len().min(2)]) {
-            return Found::Cut;
+            return ScanResult::Cut;
         }
         if length == 0 {
-            return Found::Damage {
+            return ScanResult::Damage {
                 skip: self.next_head(bytes, 1, bytes.len()),
             };
         }
         let (Some(payload), Some(&type_id)) = (bytes.get(3..length), bytes.get(2)) else {
-            return Found::Cut;
+            return ScanResult::Cut;
         };
         if bytes.len() == length || self.starts(&bytes[length..]) {
-            return Found::Record { type_id, payload };
+            return ScanResult::Record { type_id, payload };
         }
         // No record follows. If a record that starts inside this one is itself followed by another, then bytes of this
         // one are missing; otherwise the next record is damaged.
         let inner = self.next_head(bytes, 1, length);
         if inner < length && self.starts(&bytes[inner + self.length(&bytes[inner..])..]) {
-            return Found::Damage { skip: inner };
+            return ScanResult::Damage { skip: inner };
         }
-        Found::Record { type_id, payload }
+        ScanResult::Record { type_id, payload }
     }
 
     /// The length of the record that starts here; 0 if none does.
@@ -195,7 +195,7 @@ impl<'o> Scanner<'o> {
     }
 }
 
-enum Found<'a> {
+enum ScanResult<'a> {
     Record {
         type_id: u8,
         payload: &'a [u8],

@@ -1,13 +1,13 @@
 //! The use of each kind of DataFlash message.
 
 use super::format::Format;
-use super::signals::{From, INSTANCE, SPECS, Spec};
+use super::signals::{INSTANCE, MessageSpec, SPECS, SignalSource};
 use crate::Options;
 use crate::signal::Label;
 
 /// The use of a message type. Numbers are columns.
 #[derive(Debug)]
-pub(super) enum Role {
+pub(super) enum MessageRole {
     Nothing,
     Parameter {
         name: usize,
@@ -23,12 +23,12 @@ pub(super) enum Role {
     /// Output commands: the prefix of their labels, then the column and number of each.
     Outputs(&'static str, Vec<(usize, u16)>),
     /// The index of the series, and how each of its signals is computed.
-    Series(usize, Vec<Part>),
+    Series(usize, Vec<ResolvedSource>),
 }
 
 /// One signal of a series.
 #[derive(Debug)]
-pub(super) enum Part {
+pub(super) enum ResolvedSource {
     Field { column: usize, scale: f64 },
     Length(Vec<usize>),
     Position(usize),
@@ -36,15 +36,15 @@ pub(super) enum Part {
 
 /// A message type and its use.
 #[derive(Debug)]
-pub(super) struct Kind {
+pub(super) struct MessageType {
     pub(super) format: Format,
-    pub(super) role: Role,
+    pub(super) role: MessageRole,
     /// The column of the time, and its unit in seconds.
     pub(super) time: Option<(usize, f64)>,
     pub(super) instance: Option<usize>,
 }
 
-impl Kind {
+impl MessageType {
     /// Determines the use of a message type. `series` returns the index of the series that has these signals, for the
     /// message with that name.
     pub(super) fn new(
@@ -67,16 +67,16 @@ impl Kind {
             true => role(&format).or_else(|| {
                 let spec = SPECS.iter().find(|spec| spec.message == format.name)?;
                 let (parts, labels) = parts(spec, &format, options).into_iter().unzip();
-                Some(Role::Series(series(spec.message, labels), parts))
+                Some(MessageRole::Series(series(spec.message, labels), parts))
             }),
             false => None,
         };
         Self {
             instance: match role {
-                Some(Role::Series(..)) => format.column(INSTANCE),
+                Some(MessageRole::Series(..)) => format.column(INSTANCE),
                 _ => None,
             },
-            role: role.unwrap_or(Role::Nothing),
+            role: role.unwrap_or(MessageRole::Nothing),
             time,
             format,
         }
@@ -84,16 +84,16 @@ impl Kind {
 }
 
 /// The use of a message type without signals.
-fn role(format: &Format) -> Option<Role> {
+fn role(format: &Format) -> Option<MessageRole> {
     let column = |label| format.column(&[label]);
     match format.name.as_str() {
         "PARM" => column("Name")
             .zip(column("Value"))
-            .map(|(name, value)| Role::Parameter { name, value }),
-        "MSG" => column("Message").map(Role::Text),
-        "EV" => column("Id").map(Role::Event),
-        "ARM" => column("ArmState").map(Role::Arm),
-        "MODE" => column("Mode").map(|name| Role::Mode {
+            .map(|(name, value)| MessageRole::Parameter { name, value }),
+        "MSG" => column("Message").map(MessageRole::Text),
+        "EV" => column("Id").map(MessageRole::Event),
+        "ARM" => column("ArmState").map(MessageRole::Arm),
+        "MODE" => column("Mode").map(|name| MessageRole::Mode {
             number: column("ModeNum"),
             name,
         }),
@@ -107,7 +107,7 @@ fn role(format: &Format) -> Option<Role> {
 pub(super) const MOTORS: &str = "MOT";
 
 /// The columns whose label is one of `stems` followed by a number.
-fn outputs(format: &Format, stems: &[&'static str]) -> Option<Role> {
+fn outputs(format: &Format, stems: &[&'static str]) -> Option<MessageRole> {
     let number = |label: &str| {
         stems.iter().find_map(|stem| {
             let number: u16 = label.strip_prefix(stem)?.parse().ok()?;
@@ -125,43 +125,43 @@ fn outputs(format: &Format, stems: &[&'static str]) -> Option<Role> {
             Some((stem, (column, output)))
         })
         .unzip();
-    Some(Role::Outputs(stems.first()?, columns))
+    Some(MessageRole::Outputs(stems.first()?, columns))
 }
 
 /// The signals that a message of this format contains and that the options request.
-fn parts(spec: &Spec, format: &Format, options: &Options) -> Vec<(Part, Label)> {
+fn parts(spec: &MessageSpec, format: &Format, options: &Options) -> Vec<(ResolvedSource, Label)> {
     let integer = |column: usize| format.has_kind(column, b"hHiI");
     spec.signals
         .iter()
         .filter(|(_, name, _)| options.wants(name))
         .filter_map(|(from, name, unit)| {
             let (part, fields) = match from {
-                From::Field(labels) => {
+                SignalSource::Field(labels) => {
                     let column = format.column(labels)?;
                     (
-                        Part::Field { column, scale: 1.0 },
+                        ResolvedSource::Field { column, scale: 1.0 },
                         format.columns.get(column)?.label.clone(),
                     )
                 }
-                From::Hundredths(labels) => {
+                SignalSource::Hundredths(labels) => {
                     let column = format.column(labels)?;
                     let scale = if integer(column) { 0.01 } else { 1.0 };
                     (
-                        Part::Field { column, scale },
+                        ResolvedSource::Field { column, scale },
                         format.columns.get(column)?.label.clone(),
                     )
                 }
-                From::Position(labels) => {
+                SignalSource::Position(labels) => {
                     let column = format.column(labels)?;
                     (
-                        Part::Position(column),
+                        ResolvedSource::Position(column),
                         format.columns.get(column)?.label.clone(),
                     )
                 }
-                From::Length(labels) => {
+                SignalSource::Length(labels) => {
                     let columns = labels.iter().map(|label| format.column(&[label]));
                     (
-                        Part::Length(columns.collect::<Option<_>>()?),
+                        ResolvedSource::Length(columns.collect::<Option<_>>()?),
                         labels.join(", "),
                     )
                 }

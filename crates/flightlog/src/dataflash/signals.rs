@@ -1,7 +1,7 @@
 //! Maps DataFlash messages to signals.
 
 /// How a signal is computed from the fields of a message.
-pub(crate) enum From {
+pub(crate) enum SignalSource {
     /// The first of these labels that the message has.
     Field(&'static [&'static str]),
     /// As `Field`; in hundredths if the field is an integer (firmware before 3.3).
@@ -13,24 +13,24 @@ pub(crate) enum From {
 }
 
 /// The signals of one message type: computation, name, unit.
-pub(crate) struct Spec {
+pub(crate) struct MessageSpec {
     pub(crate) message: &'static str,
-    pub(crate) signals: &'static [(From, &'static str, &'static str)],
+    pub(crate) signals: &'static [(SignalSource, &'static str, &'static str)],
 }
 
 /// Labels of the field that numbers several sensors, cores or batteries; only number 0 is used.
 pub(crate) const INSTANCE: &[&str] = &["I", "Inst", "Instance", "IMU", "C"];
 
-use From::{Field, Hundredths, Length, Position};
+use SignalSource::{Field, Hundredths, Length, Position};
 
-const WIND: &[(From, &str, &str)] = &[
+const WIND: &[(SignalSource, &str, &str)] = &[
     (Field(&["VWN"]), "ekf_wind_north_m_s", "m/s"),
     (Field(&["VWE"]), "ekf_wind_east_m_s", "m/s"),
     (Length(&["VWN", "VWE"]), "ekf_wind_m_s", "m/s"),
 ];
 
-pub(crate) const SPECS: &[Spec] = &[
-    Spec {
+pub(crate) const SPECS: &[MessageSpec] = &[
+    MessageSpec {
         message: "ATT",
         signals: &[
             (Field(&["DesRoll", "RollIn"]), "roll_des_deg", "deg"),
@@ -41,7 +41,7 @@ pub(crate) const SPECS: &[Spec] = &[
             (Field(&["Yaw"]), "yaw_deg", "deg"),
         ],
     },
-    Spec {
+    MessageSpec {
         message: "RATE",
         signals: &[
             (Field(&["ROut"]), "roll_output", "1"),
@@ -49,7 +49,7 @@ pub(crate) const SPECS: &[Spec] = &[
             (Field(&["YOut"]), "yaw_output", "1"),
         ],
     },
-    Spec {
+    MessageSpec {
         message: "BAT",
         signals: &[
             (Field(&["Volt"]), "battery_v", "V"),
@@ -58,7 +58,7 @@ pub(crate) const SPECS: &[Spec] = &[
             (Field(&["RemPct"]), "battery_remaining_pct", "%"),
         ],
     },
-    Spec {
+    MessageSpec {
         message: "CURR",
         signals: &[
             (Hundredths(&["Volt"]), "battery_v", "V"),
@@ -66,11 +66,11 @@ pub(crate) const SPECS: &[Spec] = &[
             (Field(&["CurrTot"]), "battery_used_mah", "mAh"),
         ],
     },
-    Spec {
+    MessageSpec {
         message: "CTUN",
         signals: &[(Field(&["Alt", "BarAlt"]), "altitude_m", "m")],
     },
-    Spec {
+    MessageSpec {
         message: "VIBE",
         signals: &[
             (Field(&["VibeX"]), "vibration_x_m_s2", "m/s2"),
@@ -85,14 +85,14 @@ pub(crate) const SPECS: &[Spec] = &[
         ],
     },
     // The estimated position is preferred to that of the receiver.
-    Spec {
+    MessageSpec {
         message: "POS",
         signals: &[
             (Position(&["Lat"]), "latitude_deg", "deg"),
             (Position(&["Lng"]), "longitude_deg", "deg"),
         ],
     },
-    Spec {
+    MessageSpec {
         message: "GPS",
         signals: &[
             (Position(&["Lat"]), "latitude_deg", "deg"),
@@ -103,14 +103,14 @@ pub(crate) const SPECS: &[Spec] = &[
             (Field(&["Spd"]), "ground_speed_m_s", "m/s"),
         ],
     },
-    Spec {
+    MessageSpec {
         message: "GPA",
         signals: &[
             (Field(&["HAcc"]), "gps_horizontal_accuracy_m", "m"),
             (Field(&["VAcc"]), "gps_vertical_accuracy_m", "m"),
         ],
     },
-    Spec {
+    MessageSpec {
         message: "RAD",
         signals: &[
             (Field(&["RSSI"]), "radio_rssi", ""),
@@ -118,26 +118,26 @@ pub(crate) const SPECS: &[Spec] = &[
             (Field(&["Noise"]), "radio_noise", ""),
         ],
     },
-    Spec {
+    MessageSpec {
         message: "RSSI",
         signals: &[
             (Field(&["RXRSSI"]), "rc_rssi", "1"),
             (Field(&["RXLQ"]), "rc_link_quality_pct", "%"),
         ],
     },
-    Spec {
+    MessageSpec {
         message: "XKF2",
         signals: WIND,
     },
-    Spec {
+    MessageSpec {
         message: "NKF2",
         signals: WIND,
     },
-    Spec {
+    MessageSpec {
         message: "EKF2",
         signals: WIND,
     },
-    Spec {
+    MessageSpec {
         message: "SIMW",
         signals: &[
             (Length(&["WN", "WE"]), "wind_m_s", "m/s"),

@@ -2,19 +2,19 @@
 
 use super::format::Cells;
 
-/// The maximum size of the kept messages in bytes, with an allowance for each message, so that a log without any time
+/// The maximum size of the pending messages in bytes, with an allowance for each message, so that a log without any time
 /// does not fill the memory.
 const MOST_BYTES: usize = 1 << 24;
 const BYTES_A_MESSAGE: usize = 64;
 
-/// A message that is kept until its time is known.
-pub(super) enum Kept {
+/// A message that is pending until its time is known.
+pub(super) enum PendingMessage {
     Binary(u8, Vec<u8>),
     /// The cells joined by commas: no cell contains one.
     Text(u8, String),
 }
 
-impl Kept {
+impl PendingMessage {
     pub(super) fn new(type_id: u8, cells: Cells<'_>) -> Self {
         match cells {
             Cells::Binary(payload) => Self::Binary(type_id, payload.to_vec()),
@@ -44,10 +44,10 @@ impl Kept {
 /// Assigns times to messages without one, spread evenly between the surrounding messages with a time (usually GPS at
 /// 5 Hz).
 #[derive(Default)]
-pub(super) struct Untimed {
-    kept: Vec<Kept>,
-    kept_bytes: usize,
-    /// The number of kept messages before the first message with a time.
+pub(super) struct UntimedMessages {
+    pending: Vec<PendingMessage>,
+    pending_bytes: usize,
+    /// The number of pending messages before the first message with a time.
     before_first: usize,
     /// The time of the last message with a time.
     last_s: Option<f64>,
@@ -55,25 +55,25 @@ pub(super) struct Untimed {
     step_s: f64,
 }
 
-impl Untimed {
+impl UntimedMessages {
     /// Keeps a message until its time is known; returns `false` if there are too many already.
     pub(super) fn keep(&mut self, type_id: u8, cells: Cells<'_>) -> bool {
-        let has_room = self.kept_bytes < MOST_BYTES;
+        let has_room = self.pending_bytes < MOST_BYTES;
         if has_room {
-            let kept = Kept::new(type_id, cells);
-            self.kept_bytes += kept.bytes();
-            self.kept.push(kept);
+            let pending = PendingMessage::new(type_id, cells);
+            self.pending_bytes += pending.bytes();
+            self.pending.push(pending);
         }
         has_room
     }
 
     pub(super) fn is_empty(&self) -> bool {
-        self.kept.is_empty()
+        self.pending.is_empty()
     }
 
     /// Notes that the first message with a time was read, but is not confirmed yet.
     pub(super) fn mark_first(&mut self) {
-        self.before_first = self.kept.len();
+        self.before_first = self.pending.len();
     }
 
     /// Notes that the first message with a time is confirmed, at the time `first_s`.
@@ -81,12 +81,15 @@ impl Untimed {
         self.last_s.get_or_insert(first_s);
     }
 
-    /// Returns the kept messages, evenly spaced in time up to the message at `t_s`, which follows them. Messages before
+    /// Returns the pending messages, evenly spaced in time up to the message at `t_s`, which follows them. Messages before
     /// the first message with a time get the same spacing as those after it.
-    pub(super) fn timed_before(&mut self, t_s: f64) -> impl Iterator<Item = (f64, Kept)> + use<> {
+    pub(super) fn timed_before(
+        &mut self,
+        t_s: f64,
+    ) -> impl Iterator<Item = (f64, PendingMessage)> + use<> {
         let from_s = self.last_s.replace(t_s).unwrap_or(t_s).min(t_s);
         let before = std::mem::take(&mut self.before_first);
-        let after = self.kept.len().saturating_sub(before);
+        let after = self.pending.len().saturating_sub(before);
         if after > 0 {
             self.step_s = (t_s - from_s) / (after + 1) as f64;
         }
@@ -94,26 +97,30 @@ impl Untimed {
     }
 
     /// Returns the messages after the last message with a time; none if there was no such message.
-    pub(super) fn timed_at_end(&mut self) -> impl Iterator<Item = (f64, Kept)> + use<> {
+    pub(super) fn timed_at_end(&mut self) -> impl Iterator<Item = (f64, PendingMessage)> + use<> {
         if self.last_s.is_none() {
-            self.kept.clear();
+            self.pending.clear();
         }
         self.spread(self.last_s.unwrap_or_default(), 0)
     }
 
-    /// Spreads the kept messages. `from_s` is the time of the message that came after the first `before` of them.
-    fn spread(&mut self, from_s: f64, before: usize) -> impl Iterator<Item = (f64, Kept)> + use<> {
+    /// Spreads the pending messages. `from_s` is the time of the message that came after the first `before` of them.
+    fn spread(
+        &mut self,
+        from_s: f64,
+        before: usize,
+    ) -> impl Iterator<Item = (f64, PendingMessage)> + use<> {
         let step_s = self.step_s;
-        self.kept_bytes = 0;
-        std::mem::take(&mut self.kept)
+        self.pending_bytes = 0;
+        std::mem::take(&mut self.pending)
             .into_iter()
             .enumerate()
-            .map(move |(index, kept)| {
+            .map(move |(index, pending)| {
                 let steps = match index < before {
                     true => -((before - index) as f64),
                     false => (index - before + 1) as f64,
                 };
-                (from_s + step_s * steps, kept)
+                (from_s + step_s * steps, pending)
             })
     }
 }
@@ -122,19 +129,19 @@ impl Untimed {
 mod tests {
     use super::*;
 
-    fn keep(untimed: &mut Untimed, count: usize) {
+    fn keep(untimed: &mut UntimedMessages, count: usize) {
         for _ in 0..count {
             assert!(untimed.keep(1, Cells::Binary(&[])));
         }
     }
 
-    fn times(timed: impl Iterator<Item = (f64, Kept)>) -> Vec<f64> {
+    fn times(timed: impl Iterator<Item = (f64, PendingMessage)>) -> Vec<f64> {
         timed.map(|(t_s, _)| t_s).collect()
     }
 
     #[test]
     fn messages_are_spread_between_those_with_a_time() {
-        let mut untimed = Untimed::default();
+        let mut untimed = UntimedMessages::default();
         keep(&mut untimed, 2);
         untimed.mark_first();
         keep(&mut untimed, 1);
@@ -148,7 +155,7 @@ mod tests {
 
     #[test]
     fn without_any_time_nothing_has_a_time() {
-        let mut untimed = Untimed::default();
+        let mut untimed = UntimedMessages::default();
         keep(&mut untimed, 2);
         assert!(times(untimed.timed_at_end()).is_empty());
     }

@@ -1,10 +1,10 @@
 //! Motor geometry: how much each motor rolls, pitches and yaws the vehicle, with its source.
 
-mod declared;
+mod declared_layout;
 pub(crate) mod infer;
 pub(crate) mod tables;
 
-pub(crate) use declared::{Declared, rotor_effects};
+pub(crate) use declared_layout::{DeclaredLayout, rotor_effects};
 
 use crate::{Flight, Motor, Series, VehicleKind};
 
@@ -147,15 +147,15 @@ pub fn ardupilot_frames() -> impl Iterator<Item = Frame> {
 
 /// The geometry of these motors from the declared layout. Quadrotors of an unknown type are assumed to have the usual
 /// motor numbers.
-pub(crate) fn of(motors: &[Motor], declared: &Declared) -> Option<Geometry> {
+pub(crate) fn of(motors: &[Motor], declared: &DeclaredLayout) -> Option<Geometry> {
     let layout = match declared {
-        Declared::Factors { factors, .. } => Some(factors.clone()),
-        Declared::Frame { class, kind, .. } => {
+        DeclaredLayout::Factors { factors, .. } => Some(factors.clone()),
+        DeclaredLayout::Frame { class, kind, .. } => {
             // The type of a tricopter is rarely set, and only one type differs.
             let kind = kind.or((*class == tables::TRI).then_some(tables::X));
             kind.and_then(|kind| tables::layout(*class, kind))
         }
-        Declared::Nothing => None,
+        DeclaredLayout::Nothing => None,
     };
     if let Some(factors) = layout.and_then(|layout| in_order(motors, &layout)) {
         return Some(Geometry {
@@ -181,7 +181,7 @@ pub(crate) fn of(motors: &[Motor], declared: &Declared) -> Option<Geometry> {
 
 /// The geometry of a flight from the layout that its log declares, or inferred from its commands if the log declares
 /// none. Records a doubt if the commands contradict the declared layout.
-pub(crate) fn find(flight: &Flight, declared: &Declared) -> Option<Geometry> {
+pub(crate) fn find(flight: &Flight, declared: &DeclaredLayout) -> Option<Geometry> {
     if !matches!(
         flight.vehicle.kind,
         VehicleKind::Multirotor | VehicleKind::Unknown

@@ -253,8 +253,8 @@ fn a_written_geometry_is_read_back() {
 
 #[test]
 fn parameters_of_both_autopilots_determine_the_layout() {
-    use super::Declared;
-    let of = |declared: &Declared, motors: u16| {
+    use super::DeclaredLayout;
+    let of = |declared: &DeclaredLayout, motors: u16| {
         let motors = crate::ardupilot::numbered_motors(motors, |n| n.to_string(), "test");
         let motors: Vec<_> = motors.into_iter().map(|(motor, _)| motor).collect();
         super::of(&motors, declared)
@@ -266,7 +266,7 @@ fn parameters_of_both_autopilots_determine_the_layout() {
             motors: Some(4),
             ..crate::Vehicle::default()
         };
-        let found = of(&Declared::of_ardupilot(&parameters, &vehicle), 4).unwrap();
+        let found = of(&DeclaredLayout::of_ardupilot(&parameters, &vehicle), 4).unwrap();
         (found.frame.unwrap(), found.basis, found.source)
     };
     let declared =
@@ -311,10 +311,10 @@ fn parameters_of_both_autopilots_determine_the_layout() {
         .iter()
         .map(|(name, value)| (name.as_str(), *value))
         .collect();
-    let found = of(&Declared::of_px4(&px4), 4).unwrap();
+    let found = of(&DeclaredLayout::of_px4(&px4), 4).unwrap();
     assert_eq!((found.factors, found.frame), (mixer("QUAD/X"), None));
     let airframe =
-        |number: f64| Declared::of_px4(&[("SYS_AUTOSTART", number)].into_iter().collect());
+        |number: f64| DeclaredLayout::of_px4(&[("SYS_AUTOSTART", number)].into_iter().collect());
     assert_eq!(
         of(&airframe(12_001.0), 8).unwrap().frame.as_deref(),
         Some("OCTAQUAD/X")

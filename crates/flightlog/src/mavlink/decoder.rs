@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::field::{Kind, NumericField};
+use crate::field::{NumberType, NumericField};
 use crate::mav_type::{MavType, mav_type};
 use crate::outputs::LONGEST_PULSE_US;
 use crate::parameters::Parameters;
@@ -44,7 +44,7 @@ pub(crate) fn filled(packet: &Packet<'_>) -> Payload {
     payload
 }
 
-pub(crate) fn number(payload: &Payload, offset: usize, kind: Kind) -> Option<f64> {
+pub(crate) fn number(payload: &Payload, offset: usize, kind: NumberType) -> Option<f64> {
     NumericField { offset, kind }.number(payload)
 }
 
@@ -56,7 +56,7 @@ fn text(bytes: &[u8]) -> String {
 
 /// The change that a message caused.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Told {
+pub(crate) enum DecoderChange {
     /// No change in the decoder.
     Nothing,
     /// A change of the armed state, the in-air state or the mode, which [`Decoder`] returns.
@@ -175,22 +175,22 @@ impl Decoder {
     }
 
     /// Processes a message of the vehicle.
-    pub(crate) fn message(&mut self, component: u8, id: u32, payload: &Payload) -> Told {
+    pub(crate) fn message(&mut self, component: u8, id: u32, payload: &Payload) -> DecoderChange {
         // Ground stations store parameters under other component ids.
         if component != AUTOPILOT && id != PARAM_VALUE {
-            return Told::Nothing;
+            return DecoderChange::Nothing;
         }
         match id {
             HEARTBEAT => self.heartbeat(payload),
             PARAM_VALUE => self.parameter(payload),
-            SERVO_OUTPUT_RAW => Told::Outputs(servo_outputs(payload)),
+            SERVO_OUTPUT_RAW => DecoderChange::Outputs(servo_outputs(payload)),
             AUTOPILOT_VERSION => {
                 // Capabilities, uid, then the version.
-                let version = number(payload, 16, Kind::U32).map(|version| version as u32);
+                let version = number(payload, 16, NumberType::U32).map(|version| version as u32);
                 self.version = self.version.or(version);
                 let told = || identity::of_version(&payload[8..16], &payload[60..78]);
                 self.id = self.id.take().or_else(told);
-                Told::Nothing
+                DecoderChange::Nothing
             }
             EXTENDED_SYS_STATE => {
                 // 1 on the ground, 2 in the air, 3 taking off, 4 landing; 0 is unknown.
@@ -200,20 +200,20 @@ impl Decoder {
                     _ => None,
                 };
                 self.has_landed_state |= self.is_flying.is_some();
-                Told::State
+                DecoderChange::State
             }
-            STATUSTEXT => Told::Text(text(&payload[1..51])),
+            STATUSTEXT => DecoderChange::Text(text(&payload[1..51])),
             // The index, system and component of the requester, then the name.
             PARAM_ERROR => self.parameter_error(text(&payload[4..20]), payload[20]),
-            _ => Told::Nothing,
+            _ => DecoderChange::Nothing,
         }
     }
 
-    fn heartbeat(&mut self, payload: &Payload) -> Told {
+    fn heartbeat(&mut self, payload: &Payload) -> DecoderChange {
         let [mode @ .., mav_type, autopilot, base_mode, status] =
             *payload.first_chunk::<8>().unwrap_or(&[0; 8]);
         if autopilot == NO_AUTOPILOT {
-            return Told::Nothing;
+            return DecoderChange::Nothing;
         }
         self.autopilot = Some(autopilot);
         self.mav_type = Some(mav_type);
@@ -230,10 +230,10 @@ impl Decoder {
         for (name, value, kind) in std::mem::take(&mut self.waiting) {
             self.learn(name, value, kind);
         }
-        Told::State
+        DecoderChange::State
     }
 
-    fn parameter(&mut self, payload: &Payload) -> Told {
+    fn parameter(&mut self, payload: &Payload) -> DecoderChange {
         let &[a, b, c, d, ..] = payload;
         let (name, value, kind) = (text(&payload[8..24]), [a, b, c, d], payload[24]);
         if self.is_known() {
@@ -242,16 +242,16 @@ impl Decoder {
         if self.waiting.len() < MOST_WAITING {
             self.waiting.push((name, value, kind));
         }
-        Told::Nothing
+        DecoderChange::Nothing
     }
 
-    fn parameter_error(&mut self, name: String, error: u8) -> Told {
+    fn parameter_error(&mut self, name: String, error: u8) -> DecoderChange {
         if matches!(error, 0 | READ_FAILED) || self.absent.len() >= MOST_WAITING {
-            return Told::Nothing;
+            return DecoderChange::Nothing;
         }
         match self.absent.insert(name) {
-            true => Told::Parameter,
-            false => Told::Nothing,
+            true => DecoderChange::Parameter,
+            false => DecoderChange::Nothing,
         }
     }
 
@@ -261,34 +261,34 @@ impl Decoder {
         self.absent.contains(name)
     }
 
-    fn learn(&mut self, name: String, value: [u8; 4], kind: u8) -> Told {
+    fn learn(&mut self, name: String, value: [u8; 4], kind: u8) -> DecoderChange {
         // PX4 sends the bytes of an integer instead of a float, ArduPilot every number as
         // a float (<https://mavlink.io/en/services/parameter.html#parameter_encoding>).
         let kind = match kind {
-            _ if !self.is_px4() => Kind::F32,
-            1 => Kind::U8,
-            2 => Kind::I8,
-            3 => Kind::U16,
-            4 => Kind::I16,
-            5 => Kind::U32,
-            6 => Kind::I32,
-            _ => Kind::F32,
+            _ if !self.is_px4() => NumberType::F32,
+            1 => NumberType::U8,
+            2 => NumberType::I8,
+            3 => NumberType::U16,
+            4 => NumberType::I16,
+            5 => NumberType::U32,
+            6 => NumberType::I32,
+            _ => NumberType::F32,
         };
         let value = NumericField { offset: 0, kind }.number(&value);
         let Some(value) = value.filter(|value| is_plausible(&name, *value)) else {
-            return Told::Nothing;
+            return DecoderChange::Nothing;
         };
         match self.parameters.get(&name) {
             None => self.parameters.insert(&name, value),
-            Some(_) if !self.takes_changes => return Told::Nothing,
+            Some(_) if !self.takes_changes => return DecoderChange::Nothing,
             Some(_) if self.is_in_air_or_armed() => {
                 self.changed.insert(name, value);
-                return Told::Nothing;
+                return DecoderChange::Nothing;
             }
-            Some(known) if known == value => return Told::Nothing,
+            Some(known) if known == value => return DecoderChange::Nothing,
             Some(_) => self.parameters.set(&name, value),
         }
-        Told::Parameter
+        DecoderChange::Parameter
     }
 
     /// Applies, on the ground, the parameters that were set in the air; returns whether any changed.
@@ -359,10 +359,10 @@ fn servo_outputs(payload: &Payload) -> ServoOutputs {
             5 + 2 * output
         }
     };
-    let pulse = |output| number(payload, offset(output), Kind::U16).unwrap_or_default();
+    let pulse = |output| number(payload, offset(output), NumberType::U16).unwrap_or_default();
     ServoOutputs {
         port: payload[20],
-        time_us: number(payload, 0, Kind::U32).unwrap_or_default() as u32,
+        time_us: number(payload, 0, NumberType::U32).unwrap_or_default() as u32,
         pulses_us: std::array::from_fn(|output| pulse(output) as u16),
     }
 }

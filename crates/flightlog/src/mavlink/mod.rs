@@ -28,7 +28,7 @@ pub use ::mavlink::dialects::ardupilotmega as dialect;
 
 #[cfg(feature = "mavlink")]
 pub use heartbeat::vehicle_of;
-pub use packet::{Next, Packet, Version, Why, next_packet};
+pub use packet::{Packet, PacketScan, SkipReason, Version, next_packet};
 #[cfg(feature = "mavlink")]
 pub use requests::{MOTOR_RATE_HZ, Requests, parameters_known};
 #[cfg(feature = "mavlink")]
@@ -37,6 +37,6 @@ pub use send::Sender;
 pub use setup::Setup;
 #[cfg(feature = "mavlink")]
 pub use signing::Key;
-pub use stream::{Skipped, Stream};
+pub use stream::{SkipCounts, Stream};
 #[cfg(feature = "mavlink")]
-pub use telemetry::{News, Pulses, Telemetry};
+pub use telemetry::{Pulses, Telemetry, TelemetryChange};

@@ -2,7 +2,7 @@
 //! telemetry logs use the same rules, so that a recording is assessed with the same assumptions as the live flight.
 
 use super::servo::{bank, field, px4_motors};
-use crate::geometry::Declared;
+use crate::geometry::DeclaredLayout;
 use crate::parameters::Parameters;
 use crate::{Motor, PulseRange, Range, Vehicle, ardupilot, px4};
 
@@ -17,7 +17,7 @@ pub(crate) struct KnownOutputs {
     pub(crate) effective: Range,
     /// Whether `effective` is assumed.
     pub(crate) is_effective_assumed: bool,
-    pub(crate) declared: Declared,
+    pub(crate) declared: DeclaredLayout,
     /// The assumptions for values that the vehicle did not report, as texts.
     pub(crate) assumed: Vec<String>,
 }
@@ -88,8 +88,8 @@ impl KnownOutputs {
             effective,
             is_effective_assumed,
             declared: match is_px4 {
-                true => Declared::of_px4(parameters),
-                false => Declared::of_ardupilot(parameters, vehicle),
+                true => DeclaredLayout::of_px4(parameters),
+                false => DeclaredLayout::of_ardupilot(parameters, vehicle),
             },
             assumed,
         }

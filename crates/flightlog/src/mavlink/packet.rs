@@ -122,21 +122,21 @@ fn start(bytes: &[u8]) -> Start<'_> {
 
 /// The result of looking for a packet at the start of some bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Next<'a> {
+pub enum PacketScan<'a> {
     /// A packet; the next one begins after [`Packet::bytes`].
     Packet(Packet<'a>),
     /// A packet with a message that is not in the dialect, so that its checksum cannot be verified. Another packet, or
     /// nothing, follows it.
     Unverified(Packet<'a>),
     /// This number of bytes is not part of a packet.
-    Skip(usize, Why),
+    Skip(usize, SkipReason),
     /// Possibly the beginning of a packet; more bytes are needed.
     More,
 }
 
 /// The reason why bytes are skipped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Why {
+pub enum SkipReason {
     /// The bytes do not begin like a packet.
     NoPacket,
     /// The checksum is wrong.
@@ -148,39 +148,39 @@ pub enum Why {
 /// Returns the packet of MAVLink 1 or 2 at the start of `bytes`, or the number of bytes to skip.
 ///
 /// ```
-/// use flagred_flightlog::mavlink::{Next, Why, next_packet};
+/// use flagred_flightlog::mavlink::{PacketScan, SkipReason, next_packet};
 ///
 /// let heartbeat = [
 ///     0xfe, 9, 0, 1, 1, 0, 0, 0, 0, 0, 2, 3, 81, 3, 3, 0x78, 0x51,
 /// ];
-/// let Next::Packet(packet) = next_packet(&heartbeat) else { panic!() };
+/// let PacketScan::Packet(packet) = next_packet(&heartbeat) else { panic!() };
 /// assert_eq!((packet.system, packet.component, packet.id), (1, 1, 0));
-/// assert_eq!(next_packet(b"hello"), Next::Skip(5, Why::NoPacket));
-/// assert_eq!(next_packet(&heartbeat[..12]), Next::More);
+/// assert_eq!(next_packet(b"hello"), PacketScan::Skip(5, SkipReason::NoPacket));
+/// assert_eq!(next_packet(&heartbeat[..12]), PacketScan::More);
 /// ```
-pub fn next_packet(bytes: &[u8]) -> Next<'_> {
+pub fn next_packet(bytes: &[u8]) -> PacketScan<'_> {
     let Some(garbage) = bytes.iter().position(|byte| MARKERS.contains(byte)) else {
         return match bytes.len() {
-            0 => Next::More,
-            length => Next::Skip(length, Why::NoPacket),
+            0 => PacketScan::More,
+            length => PacketScan::Skip(length, SkipReason::NoPacket),
         };
     };
     if garbage > 0 {
-        return Next::Skip(garbage, Why::NoPacket);
+        return PacketScan::Skip(garbage, SkipReason::NoPacket);
     }
     match start(bytes) {
         Start::Whole(packet) => match packet.sound {
-            Some(true) => Next::Packet(packet),
-            Some(false) => Next::Skip(1, Why::Checksum),
+            Some(true) => PacketScan::Packet(packet),
+            Some(false) => PacketScan::Skip(1, SkipReason::Checksum),
             // Its length is credible only if another packet, or nothing, follows.
             None => match bytes.get(packet.bytes.len()) {
-                Some(byte) if !MARKERS.contains(byte) => Next::Skip(1, Why::NoPacket),
-                _ => Next::Unverified(packet),
+                Some(byte) if !MARKERS.contains(byte) => PacketScan::Skip(1, SkipReason::NoPacket),
+                _ => PacketScan::Unverified(packet),
             },
         },
-        Start::Part => Next::More,
-        Start::Flags(flags) => Next::Skip(1, Why::UnknownFlags(flags)),
-        Start::Other => Next::Skip(1, Why::NoPacket),
+        Start::Part => PacketScan::More,
+        Start::Flags(flags) => PacketScan::Skip(1, SkipReason::UnknownFlags(flags)),
+        Start::Other => PacketScan::Skip(1, SkipReason::NoPacket),
     }
 }
 
@@ -231,7 +231,7 @@ mod round_trips {
     fn both_versions_are_read_back() {
         for version in [Version::V1, Version::V2] {
             let bytes = risk(version);
-            let Next::Packet(packet) = next_packet(&bytes) else {
+            let PacketScan::Packet(packet) = next_packet(&bytes) else {
                 panic!("{:?}", next_packet(&bytes));
             };
             assert_eq!(
@@ -255,7 +255,7 @@ mod round_trips {
                 let mut damaged = bytes.clone();
                 damaged[bit / 8] ^= 1 << (bit % 8);
                 assert!(
-                    !matches!(next_packet(&damaged), Next::Packet(_)),
+                    !matches!(next_packet(&damaged), PacketScan::Packet(_)),
                     "bit {bit} of {version:?}"
                 );
             }
@@ -266,7 +266,7 @@ mod round_trips {
     fn a_partial_packet_requires_more_bytes() {
         let bytes = risk(Version::V2);
         for end in 0..bytes.len() {
-            assert_eq!(next_packet(&bytes[..end]), Next::More, "{end} bytes");
+            assert_eq!(next_packet(&bytes[..end]), PacketScan::More, "{end} bytes");
         }
     }
 
@@ -277,12 +277,12 @@ mod round_trips {
             let mut at = 0;
             loop {
                 match next_packet(&bytes[at..]) {
-                    Next::Packet(packet) | Next::Unverified(packet) => at += packet.bytes.len(),
-                    Next::Skip(count, _) => {
+                    PacketScan::Packet(packet) | PacketScan::Unverified(packet) => at += packet.bytes.len(),
+                    PacketScan::Skip(count, _) => {
                         prop_assert!(count > 0);
                         at += count;
                     }
-                    Next::More => break,
+                    PacketScan::More => break,
                 }
                 prop_assert!(at <= bytes.len());
             }

@@ -2,10 +2,10 @@
 
 use super::decoder::Payload;
 use crate::angle::Angle;
-use crate::field::{Kind, NumericField};
+use crate::field::{NumberType, NumericField};
 
 /// How a signal is computed from the payload of a message.
-pub(crate) enum From {
+pub(crate) enum SignalSource {
     /// A number multiplied by a factor; the second number means "unknown".
     Number(NumericField, f64, Option<f64>),
     /// The length of the vector of these fields.
@@ -15,36 +15,36 @@ pub(crate) enum From {
 }
 
 /// The signals of one message: computation, name, unit.
-pub(crate) struct Spec {
+pub(crate) struct MessageSpec {
     pub(crate) id: u32,
     pub(crate) message: &'static str,
-    pub(crate) signals: &'static [(From, &'static str, &'static str)],
+    pub(crate) signals: &'static [(SignalSource, &'static str, &'static str)],
 }
 
-const fn at(offset: usize, kind: Kind) -> NumericField {
+const fn at(offset: usize, kind: NumberType) -> NumericField {
     NumericField { offset, kind }
 }
 
-const fn plain(offset: usize, kind: Kind) -> From {
-    From::Number(at(offset, kind), 1.0, None)
+const fn plain(offset: usize, kind: NumberType) -> SignalSource {
+    SignalSource::Number(at(offset, kind), 1.0, None)
 }
 
 const DEG: f64 = 180.0 / std::f64::consts::PI;
 
-const fn degrees(offset: usize) -> From {
-    From::Number(at(offset, Kind::F32), DEG, None)
+const fn degrees(offset: usize) -> SignalSource {
+    SignalSource::Number(at(offset, NumberType::F32), DEG, None)
 }
 
 /// RADIO_STATUS of the common dialect and RADIO of SiK radios have the same fields.
-const RADIO: &[(From, &str, &str)] = &[
-    (plain(4, Kind::U8), "radio_rssi", ""),
-    (plain(5, Kind::U8), "radio_remote_rssi", ""),
-    (plain(7, Kind::U8), "radio_noise", ""),
+const RADIO: &[(SignalSource, &str, &str)] = &[
+    (plain(4, NumberType::U8), "radio_rssi", ""),
+    (plain(5, NumberType::U8), "radio_remote_rssi", ""),
+    (plain(7, NumberType::U8), "radio_noise", ""),
 ];
 
 /// The signals of each message. If two messages contain the same signal, the first is preferred.
-pub(crate) const SPECS: &[Spec] = &[
-    Spec {
+pub(crate) const SPECS: &[MessageSpec] = &[
+    MessageSpec {
         id: 30,
         message: "ATTITUDE",
         signals: &[
@@ -53,168 +53,172 @@ pub(crate) const SPECS: &[Spec] = &[
             (degrees(12), "yaw_deg", "deg"),
         ],
     },
-    Spec {
+    MessageSpec {
         id: 62,
         message: "NAV_CONTROLLER_OUTPUT",
         signals: &[
-            (plain(0, Kind::F32), "roll_des_deg", "deg"),
-            (plain(4, Kind::F32), "pitch_des_deg", "deg"),
+            (plain(0, NumberType::F32), "roll_des_deg", "deg"),
+            (plain(4, NumberType::F32), "pitch_des_deg", "deg"),
         ],
     },
-    Spec {
+    MessageSpec {
         id: 83,
         message: "ATTITUDE_TARGET",
         signals: &[
-            (From::Angle(Angle::Roll, 4), "roll_des_deg", "deg"),
-            (From::Angle(Angle::Pitch, 4), "pitch_des_deg", "deg"),
-            (From::Angle(Angle::Yaw, 4), "yaw_des_deg", "deg"),
+            (SignalSource::Angle(Angle::Roll, 4), "roll_des_deg", "deg"),
+            (SignalSource::Angle(Angle::Pitch, 4), "pitch_des_deg", "deg"),
+            (SignalSource::Angle(Angle::Yaw, 4), "yaw_des_deg", "deg"),
         ],
     },
-    Spec {
+    MessageSpec {
         id: 1,
         message: "SYS_STATUS",
         signals: &[
             (
-                From::Number(at(14, Kind::U16), 1e-3, Some(65_535.0)),
+                SignalSource::Number(at(14, NumberType::U16), 1e-3, Some(65_535.0)),
                 "battery_v",
                 "V",
             ),
             (
-                From::Number(at(16, Kind::I16), 0.01, Some(-1.0)),
+                SignalSource::Number(at(16, NumberType::I16), 0.01, Some(-1.0)),
                 "battery_a",
                 "A",
             ),
             (
-                From::Number(at(30, Kind::I8), 1.0, Some(-1.0)),
+                SignalSource::Number(at(30, NumberType::I8), 1.0, Some(-1.0)),
                 "battery_remaining_pct",
                 "%",
             ),
         ],
     },
-    Spec {
+    MessageSpec {
         id: 147,
         message: "BATTERY_STATUS",
         signals: &[(
-            From::Number(at(0, Kind::I32), 1.0, Some(-1.0)),
+            SignalSource::Number(at(0, NumberType::I32), 1.0, Some(-1.0)),
             "battery_used_mah",
             "mAh",
         )],
     },
-    Spec {
+    MessageSpec {
         id: 33,
         message: "GLOBAL_POSITION_INT",
         signals: &[
             // 0 before the first position.
             (
-                From::Number(at(4, Kind::I32), 1e-7, Some(0.0)),
+                SignalSource::Number(at(4, NumberType::I32), 1e-7, Some(0.0)),
                 "latitude_deg",
                 "deg",
             ),
             (
-                From::Number(at(8, Kind::I32), 1e-7, Some(0.0)),
+                SignalSource::Number(at(8, NumberType::I32), 1e-7, Some(0.0)),
                 "longitude_deg",
                 "deg",
             ),
             (
-                From::Number(at(16, Kind::I32), 1e-3, None),
+                SignalSource::Number(at(16, NumberType::I32), 1e-3, None),
                 "altitude_m",
                 "m",
             ),
         ],
     },
-    Spec {
+    MessageSpec {
         id: 74,
         message: "VFR_HUD",
         signals: &[
-            (plain(4, Kind::F32), "ground_speed_m_s", "m/s"),
-            (plain(12, Kind::F32), "climb_m_s", "m/s"),
+            (plain(4, NumberType::F32), "ground_speed_m_s", "m/s"),
+            (plain(12, NumberType::F32), "climb_m_s", "m/s"),
         ],
     },
-    Spec {
+    MessageSpec {
         id: 241,
         message: "VIBRATION",
         signals: &[
-            (plain(8, Kind::F32), "vibration_x_m_s2", "m/s2"),
-            (plain(12, Kind::F32), "vibration_y_m_s2", "m/s2"),
-            (plain(16, Kind::F32), "vibration_z_m_s2", "m/s2"),
+            (plain(8, NumberType::F32), "vibration_x_m_s2", "m/s2"),
+            (plain(12, NumberType::F32), "vibration_y_m_s2", "m/s2"),
+            (plain(16, NumberType::F32), "vibration_z_m_s2", "m/s2"),
             (
-                From::Length(&[at(8, Kind::F32), at(12, Kind::F32), at(16, Kind::F32)]),
+                SignalSource::Length(&[
+                    at(8, NumberType::F32),
+                    at(12, NumberType::F32),
+                    at(16, NumberType::F32),
+                ]),
                 "vibration_m_s2",
                 "m/s2",
             ),
-            (plain(20, Kind::U32), "accelerometer_clips", ""),
+            (plain(20, NumberType::U32), "accelerometer_clips", ""),
         ],
     },
-    Spec {
+    MessageSpec {
         id: 24,
         message: "GPS_RAW_INT",
         signals: &[
             (
-                From::Number(at(8, Kind::I32), 1e-7, Some(0.0)),
+                SignalSource::Number(at(8, NumberType::I32), 1e-7, Some(0.0)),
                 "latitude_deg",
                 "deg",
             ),
             (
-                From::Number(at(12, Kind::I32), 1e-7, Some(0.0)),
+                SignalSource::Number(at(12, NumberType::I32), 1e-7, Some(0.0)),
                 "longitude_deg",
                 "deg",
             ),
-            (plain(28, Kind::U8), "gps_fix", ""),
+            (plain(28, NumberType::U8), "gps_fix", ""),
             (
-                From::Number(at(29, Kind::U8), 1.0, Some(255.0)),
+                SignalSource::Number(at(29, NumberType::U8), 1.0, Some(255.0)),
                 "gps_satellites",
                 "",
             ),
             (
-                From::Number(at(20, Kind::U16), 0.01, Some(65_535.0)),
+                SignalSource::Number(at(20, NumberType::U16), 0.01, Some(65_535.0)),
                 "gps_hdop",
                 "",
             ),
             // The next two fields are extensions, which are 0 if the sender does not support them.
             (
-                From::Number(at(34, Kind::U32), 1e-3, Some(0.0)),
+                SignalSource::Number(at(34, NumberType::U32), 1e-3, Some(0.0)),
                 "gps_horizontal_accuracy_m",
                 "m",
             ),
             (
-                From::Number(at(38, Kind::U32), 1e-3, Some(0.0)),
+                SignalSource::Number(at(38, NumberType::U32), 1e-3, Some(0.0)),
                 "gps_vertical_accuracy_m",
                 "m",
             ),
         ],
     },
-    Spec {
+    MessageSpec {
         id: 109,
         message: "RADIO_STATUS",
         signals: RADIO,
     },
-    Spec {
+    MessageSpec {
         id: 166,
         message: "RADIO",
         signals: RADIO,
     },
-    Spec {
+    MessageSpec {
         id: 65,
         message: "RC_CHANNELS",
         signals: &[(
-            From::Number(at(41, Kind::U8), 1.0 / 254.0, Some(255.0)),
+            SignalSource::Number(at(41, NumberType::U8), 1.0 / 254.0, Some(255.0)),
             "rc_rssi",
             "1",
         )],
     },
-    Spec {
+    MessageSpec {
         id: 168,
         message: "WIND",
-        signals: &[(plain(4, Kind::F32), "ekf_wind_m_s", "m/s")],
+        signals: &[(plain(4, NumberType::F32), "ekf_wind_m_s", "m/s")],
     },
-    Spec {
+    MessageSpec {
         id: 231,
         message: "WIND_COV",
         signals: &[
-            (plain(8, Kind::F32), "ekf_wind_north_m_s", "m/s"),
-            (plain(12, Kind::F32), "ekf_wind_east_m_s", "m/s"),
+            (plain(8, NumberType::F32), "ekf_wind_north_m_s", "m/s"),
+            (plain(12, NumberType::F32), "ekf_wind_east_m_s", "m/s"),
             (
-                From::Length(&[at(8, Kind::F32), at(12, Kind::F32)]),
+                SignalSource::Length(&[at(8, NumberType::F32), at(12, NumberType::F32)]),
                 "ekf_wind_m_s",
                 "m/s",
             ),
@@ -231,7 +235,7 @@ pub(crate) fn spec_of(id: u32, payload: &Payload) -> Option<usize> {
     index.filter(|_| !is_other_battery)
 }
 
-impl From {
+impl SignalSource {
     /// The value of the signal in a payload that is filled up with zeros.
     pub(crate) fn value(&self, payload: &[u8]) -> Option<f64> {
         match self {
@@ -243,7 +247,8 @@ impl From {
                 crate::field::vector_length(fields.iter().map(|field| field.number(payload)))
             }
             Self::Angle(angle, offset) => {
-                let element = |index: usize| at(offset + 4 * index, Kind::F32).number(payload);
+                let element =
+                    |index: usize| at(offset + 4 * index, NumberType::F32).number(payload);
                 Some(angle.of([element(0)?, element(1)?, element(2)?, element(3)?]))
             }
         }

@@ -1,10 +1,10 @@
 //! Splits a stream of bytes into packets.
 
-use super::{Next, Packet, Why, next_packet};
+use super::{Packet, PacketScan, SkipReason, next_packet};
 
 /// Counts of skipped data.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Skipped {
+pub struct SkipCounts {
     /// The number of bytes that are not part of a readable packet.
     pub bytes: u64,
     /// Packets with a wrong checksum, and bytes that only looked like the beginning of a packet.
@@ -20,10 +20,10 @@ pub struct Skipped {
     pub bad_signatures: u64,
 }
 
-impl Skipped {
+impl SkipCounts {
     /// Whether nothing was skipped.
     pub fn is_empty(&self) -> bool {
-        *self == Skipped::default()
+        *self == SkipCounts::default()
     }
 }
 
@@ -56,7 +56,7 @@ enum Refusal {
 pub struct Stream {
     buffer: Vec<u8>,
     taken: usize,
-    skipped: Skipped,
+    skipped: SkipCounts,
     #[cfg(feature = "mavlink")]
     key: Option<super::Key>,
 }
@@ -91,7 +91,7 @@ impl Stream {
     pub fn packet(&mut self) -> Option<Packet<'_>> {
         let length = loop {
             match next_packet(self.buffer.get(self.taken..)?) {
-                Next::Packet(packet) | Next::Unverified(packet) => {
+                PacketScan::Packet(packet) | PacketScan::Unverified(packet) => {
                     let length = packet.bytes.len();
                     let is_unverified = packet.sound.is_none();
                     match self.refusal(&packet) {
@@ -107,22 +107,22 @@ impl Stream {
                     }
                     self.taken += length;
                 }
-                Next::Skip(count, why) => {
-                    match why {
-                        Why::NoPacket => {}
-                        Why::Checksum => self.skipped.checksums += 1,
-                        Why::UnknownFlags(_) => self.skipped.unknown += 1,
+                PacketScan::Skip(count, reason) => {
+                    match reason {
+                        SkipReason::NoPacket => {}
+                        SkipReason::Checksum => self.skipped.checksums += 1,
+                        SkipReason::UnknownFlags(_) => self.skipped.unknown += 1,
                     }
                     self.skipped.bytes += count as u64;
                     self.taken += count;
                 }
-                Next::More => return None,
+                PacketScan::More => return None,
             }
         };
         let start = self.taken;
         self.taken += length;
         match next_packet(self.buffer.get(start..self.taken)?) {
-            Next::Packet(packet) | Next::Unverified(packet) => Some(packet),
+            PacketScan::Packet(packet) | PacketScan::Unverified(packet) => Some(packet),
             _ => None,
         }
     }
@@ -146,7 +146,7 @@ impl Stream {
     }
 
     /// The counts of skipped data since the stream began.
-    pub fn skipped(&self) -> Skipped {
+    pub fn skipped(&self) -> SkipCounts {
         self.skipped
     }
 }

@@ -2,15 +2,15 @@
 
 use super::{
     Packet, Setup, Version,
-    decoder::{AUTOPILOT, Decoder, Payload, ServoOutputs, Told, filled, number},
+    decoder::{AUTOPILOT, Decoder, DecoderChange, Payload, ServoOutputs, filled, number},
     servo::OUTPUTS_A_PORT,
     setup::missing,
-    signals::{SPECS, Spec, spec_of},
+    signals::{MessageSpec, SPECS, spec_of},
 };
 use crate::{
     Parameter, PulseRange, Vehicle,
-    clock::{Checked, Clock, seconds_of},
-    field::Kind,
+    clock::{Clock, TimestampDecision, seconds_of},
+    field::NumberType,
 };
 
 const SYS_STATUS: u32 = 1;
@@ -73,7 +73,7 @@ struct LiveClock {
 /// The change that a packet caused.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
-pub enum News {
+pub enum TelemetryChange {
     /// No relevant change.
     Nothing,
     /// A parameter is now known.
@@ -91,7 +91,9 @@ pub enum News {
 ///
 /// # Example: from a heartbeat to motor commands
 /// ```
-/// use flagred_flightlog::mavlink::{News, Next, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
+/// use flagred_flightlog::mavlink::{
+///     PacketScan, Sender, Telemetry, TelemetryChange, Version, dialect::*, next_packet, vehicle_of,
+/// };
 ///
 /// // The autopilot of an armed quadrotor, in place of a link.
 /// let mut autopilot = Sender::new(1);
@@ -104,22 +106,22 @@ pub enum News {
 ///     ..HEARTBEAT_DATA::default()
 /// }));
 ///
-/// let Next::Packet(packet) = next_packet(&heartbeat) else { panic!("no packet") };
+/// let PacketScan::Packet(packet) = next_packet(&heartbeat) else { panic!("no packet") };
 /// let vehicle = vehicle_of(&packet).unwrap();
 /// let mut telemetry = Telemetry::new(&packet, vehicle);
 /// assert!(telemetry.is_armed() && telemetry.is_in_air());
 ///
-/// let mut news = News::Nothing;
+/// let mut change = TelemetryChange::Nothing;
 /// for i in 1..=10 {
 ///     let outputs = send(MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {
 ///         time_usec: 40_000 * i,
 ///         servo1_raw: 1550, servo2_raw: 1550, servo3_raw: 1550, servo4_raw: 1950,
 ///         ..SERVO_OUTPUT_RAW_DATA::default()
 ///     }));
-///     let Next::Packet(packet) = next_packet(&outputs) else { panic!("no packet") };
-///     news = telemetry.receive(&packet, 0.04 * f64::from(i));
+///     let PacketScan::Packet(packet) = next_packet(&outputs) else { panic!("no packet") };
+///     change = telemetry.receive(&packet, 0.04 * f64::from(i));
 /// }
-/// assert!(matches!(news, News::Commands { t_s } if (t_s - 0.4).abs() < 1e-9));
+/// assert!(matches!(change, TelemetryChange::Commands { t_s } if (t_s - 0.4).abs() < 1e-9));
 ///
 /// // No parameter came, so limits are assumed, and said to be.
 /// let setup = telemetry.setup();
@@ -172,7 +174,7 @@ impl LatestSignal {
         }
     }
 
-    fn is_in(&self, spec: &Spec) -> bool {
+    fn is_in(&self, spec: &MessageSpec) -> bool {
         spec.signals.iter().any(|(_, name, _)| *name == self.name)
     }
 }
@@ -308,34 +310,34 @@ impl Telemetry {
     ///
     /// A clock that jumps back or ahead is accepted after its old time has been silent for 2 s: a vehicle that reboots
     /// is silent for that long, while a vehicle whose packets somebody else forges is not.
-    pub fn receive(&mut self, packet: &Packet<'_>, now_s: f64) -> News {
+    pub fn receive(&mut self, packet: &Packet<'_>, now_s: f64) -> TelemetryChange {
         if packet.system != self.system {
-            return News::Nothing;
+            return TelemetryChange::Nothing;
         }
         // The checksum of an unknown message cannot be verified, so its content is not used.
         if packet.sound.is_none() {
-            return News::Nothing;
+            return TelemetryChange::Nothing;
         }
         let payload = filled(packet);
         if packet.component == AUTOPILOT {
             self.count(packet.id, &payload, now_s);
         }
-        let told = self.decoder.message(packet.component, packet.id, &payload);
-        if told == Told::Parameter || self.decoder.take_changed() {
+        let change = self.decoder.message(packet.component, packet.id, &payload);
+        if change == DecoderChange::Parameter || self.decoder.take_changed() {
             self.parameters_changed = true;
             self.last_port = self.setup().last_port().min(PORTS - 1);
         }
-        match told {
-            Told::Parameter => return News::Parameter,
-            Told::Outputs(outputs) => return self.command(&outputs, now_s),
-            Told::State if packet.id == 0 => self.version = packet.version,
-            Told::Nothing if packet.component == AUTOPILOT => {
+        match change {
+            DecoderChange::Parameter => return TelemetryChange::Parameter,
+            DecoderChange::Outputs(outputs) => return self.command(&outputs, now_s),
+            DecoderChange::State if packet.id == 0 => self.version = packet.version,
+            DecoderChange::Nothing if packet.component == AUTOPILOT => {
                 self.keep_signals(packet.id, &payload);
                 return self.other(packet.id, &payload, now_s);
             }
-            Told::State | Told::Text(_) | Told::Nothing => {}
+            DecoderChange::State | DecoderChange::Text(_) | DecoderChange::Nothing => {}
         }
-        News::Nothing
+        TelemetryChange::Nothing
     }
 
     fn count(&mut self, id: u32, payload: &Payload, now_s: f64) {
@@ -370,15 +372,15 @@ impl Telemetry {
         }
     }
 
-    fn other(&mut self, id: u32, payload: &Payload, now_s: f64) -> News {
+    fn other(&mut self, id: u32, payload: &Payload, now_s: f64) -> TelemetryChange {
         let number = |offset, kind| number(payload, offset, kind);
         match id {
             ATTITUDE => {
-                let boot_ms = number(0, Kind::U32).unwrap_or_default();
+                let boot_ms = number(0, NumberType::U32).unwrap_or_default();
                 return self.check_boot(boot_ms as u32, now_s);
             }
-            COMMAND_ACK if number(0, Kind::U16) == Some(SET_MESSAGE_INTERVAL) => {
-                let is_accepted = number(2, Kind::U8) == Some(ACCEPTED);
+            COMMAND_ACK if number(0, NumberType::U16) == Some(SET_MESSAGE_INTERVAL) => {
+                let is_accepted = number(2, NumberType::U8) == Some(ACCEPTED);
                 // The addressee; 0 in version 1, and from vehicles that do not set it.
                 let (system, component) = (payload[8], payload[9]);
                 if system == 0 || system == self.system {
@@ -389,40 +391,40 @@ impl Telemetry {
             }
             _ => {}
         }
-        News::Nothing
+        TelemetryChange::Nothing
     }
 
     /// Attitude messages have a separate clock, which continues for 49 days, while the clock of the commands wraps
     /// around.
-    fn check_boot(&mut self, boot_ms: u32, now_s: f64) -> News {
+    fn check_boot(&mut self, boot_ms: u32, now_s: f64) -> TelemetryChange {
         let clock = &mut self.boot_clock;
         if clock.stamp.replace(boot_ms) == Some(boot_ms) {
-            return News::Nothing;
+            return TelemetryChange::Nothing;
         }
         clock.check(f64::from(boot_ms) * 1e-3, now_s, &mut self.clock_jumps);
         match clock.clock.boots_s() {
-            [] => News::Nothing,
+            [] => TelemetryChange::Nothing,
             _ => self.forget(),
         }
     }
 
-    fn command(&mut self, outputs: &ServoOutputs, now_s: f64) -> News {
+    fn command(&mut self, outputs: &ServoOutputs, now_s: f64) -> TelemetryChange {
         let port = usize::from(outputs.port);
         if port >= PORTS {
-            return News::Nothing;
+            return TelemetryChange::Nothing;
         }
         if port != self.last_port {
             // The port that completes the commands follows, with the same time.
             self.outputs[port] = (outputs.pulses_us, true);
-            return News::Nothing;
+            return TelemetryChange::Nothing;
         }
         let clock = &mut self.clock;
         if clock.stamp.replace(outputs.time_us) == Some(outputs.time_us) {
-            return News::Nothing;
+            return TelemetryChange::Nothing;
         }
         let t_s = seconds_of(outputs.time_us, clock.clock.now_s());
         let Some(t_s) = clock.check(t_s, now_s, &mut self.clock_jumps) else {
-            return News::Nothing;
+            return TelemetryChange::Nothing;
         };
         if !clock.clock.boots_s().is_empty() {
             return self.forget();
@@ -434,10 +436,10 @@ impl Telemetry {
                 *pulses = [u16::MAX; OUTPUTS_A_PORT];
             }
         }
-        News::Commands { t_s }
+        TelemetryChange::Commands { t_s }
     }
 
-    fn forget(&mut self) -> News {
+    fn forget(&mut self) -> TelemetryChange {
         self.decoder.boot();
         self.clock = LiveClock::default();
         self.boot_clock = LiveClock::default();
@@ -449,7 +451,7 @@ impl Telemetry {
         for signal in &mut self.signals {
             *signal = LatestSignal::new(&signal.name);
         }
-        News::Rebooted
+        TelemetryChange::Rebooted
     }
 
     /// Determines motors and ranges from the known parameters. Missing ones are assumed, and reported as such.
@@ -505,8 +507,10 @@ impl LiveClock {
             return None;
         }
         let t_s = match self.clock.check(t_s) {
-            Checked::At(t_s) | Checked::Refuted(t_s) | Checked::Confirmed(_, t_s) => t_s,
-            Checked::Wait | Checked::RefutedWait => return None,
+            TimestampDecision::At(t_s)
+            | TimestampDecision::Refuted(t_s)
+            | TimestampDecision::Confirmed(_, t_s) => t_s,
+            TimestampDecision::Wait | TimestampDecision::RefutedWait => return None,
         };
         self.heard_s = Some(now_s);
         Some(t_s)

@@ -4,10 +4,10 @@ use super::time::VehicleTime;
 use crate::ardupilot::{self, Mode};
 use crate::clock::Latest;
 use crate::geometry;
-use crate::mavlink::decoder::{AUTOPILOT, Decoder, Payload, ServoOutputs, Told, filled};
+use crate::mavlink::decoder::{AUTOPILOT, Decoder, DecoderChange, Payload, ServoOutputs, filled};
 use crate::mavlink::packet::Packet;
 use crate::mavlink::servo::OUTPUTS_A_PORT;
-use crate::mavlink::signals::{SPECS, Spec, spec_of};
+use crate::mavlink::signals::{MessageSpec, SPECS, spec_of};
 use crate::outputs::Outputs;
 use crate::signal::{Label, preferred};
 use crate::{
@@ -24,12 +24,12 @@ pub(super) struct Collector<'o> {
     zero_us: Option<u64>,
     latest: Latest,
     /// The state of each system, in the order of their first packets.
-    systems: Vec<(u8, Heard)>,
+    systems: Vec<(u8, SystemState)>,
 }
 
 /// The state of one system.
 #[derive(Default)]
-struct Heard {
+struct SystemState {
     decoder: Decoder,
     time: VehicleTime,
     /// The offset of the vehicle's clock from the time of reception at the first commands.
@@ -56,7 +56,7 @@ impl<'o> Collector<'o> {
 
     /// Processes a packet.
     pub(super) fn packet(&mut self, stamp_us: u64, packet: &Packet<'_>) {
-        let is_full_of_boots = self.systems.iter().any(|(_, heard)| heard.time.is_full());
+        let is_full_of_boots = self.systems.iter().any(|(_, state)| state.time.is_full());
         if self.report.leaves_out(is_full_of_boots) {
             return;
         }
@@ -67,11 +67,11 @@ impl<'o> Collector<'o> {
         }
         let known = (self.systems.iter()).position(|(system, _)| *system == packet.system);
         let index = known.unwrap_or_else(|| {
-            self.systems.push((packet.system, Heard::default()));
+            self.systems.push((packet.system, SystemState::default()));
             self.systems.len() - 1
         });
-        if let Some((_, heard)) = self.systems.get_mut(index) {
-            heard.message(t_s, packet, self.options, &mut self.report);
+        if let Some((_, state)) = self.systems.get_mut(index) {
+            state.message(t_s, packet, self.options, &mut self.report);
         }
     }
 
@@ -82,21 +82,21 @@ impl<'o> Collector<'o> {
         flight.utc_at_zero_s = self.zero_us.map(|zero_us| zero_us as f64 * 1e-6);
         // The vehicle is the first system with the heartbeat of a vehicle; without any, the first system that sends as
         // an autopilot.
-        let is_vehicle = |(_, heard): &(u8, Heard)| heard.decoder.mav_type().is_some();
+        let is_vehicle = |(_, state): &(u8, SystemState)| state.decoder.mav_type().is_some();
         let mut systems = self.systems;
         let chosen = systems.iter().position(is_vehicle).unwrap_or(0);
         if chosen < systems.len() {
-            let (system, heard) = systems.swap_remove(chosen);
-            let ahead_s = heard.ahead_s;
+            let (system, state) = systems.swap_remove(chosen);
+            let ahead_s = state.ahead_s;
             flight.utc_at_zero_s = flight.utc_at_zero_s.map(|utc_s| utc_s - ahead_s);
-            heard.finish(&mut flight, self.options);
+            state.finish(&mut flight, self.options);
             flight.vehicle.system_id = Some(system);
         }
         flight
     }
 }
 
-impl Heard {
+impl SystemState {
     /// Processes a message of the system. A row that is dropped because times go back counts as damage, but on the
     /// vehicle's clock it is a late or repeated packet.
     fn message(
@@ -109,13 +109,13 @@ impl Heard {
         let payload = filled(packet);
         let t_s = self.time.other(received_s, packet.id, &payload);
         match self.decoder.message(packet.component, packet.id, &payload) {
-            Told::State => self.state(t_s, report),
-            Told::Outputs(outputs) => self.commands(received_s, outputs, report),
-            Told::Text(text) => report.text(&mut self.texts, Event::new(t_s, text)),
-            Told::Nothing if packet.component == AUTOPILOT => {
+            DecoderChange::State => self.state(t_s, report),
+            DecoderChange::Outputs(outputs) => self.commands(received_s, outputs, report),
+            DecoderChange::Text(text) => report.text(&mut self.texts, Event::new(t_s, text)),
+            DecoderChange::Nothing if packet.component == AUTOPILOT => {
                 self.signals(t_s, packet.id, &payload, options, report);
             }
-            Told::Nothing | Told::Parameter => {}
+            DecoderChange::Nothing | DecoderChange::Parameter => {}
         }
     }
 
@@ -287,7 +287,7 @@ impl Heard {
     }
 }
 
-fn labels(spec: &Spec, options: &Options) -> Vec<Label> {
+fn labels(spec: &MessageSpec, options: &Options) -> Vec<Label> {
     spec.signals
         .iter()
         .filter(|(_, name, _)| options.wants(name))

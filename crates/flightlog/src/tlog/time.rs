@@ -1,7 +1,7 @@
 //! The vehicle's clock in a telemetry log, whose own timestamps are times of reception.
 
-use crate::clock::{Checked, Clock, seconds_of};
-use crate::field::Kind;
+use crate::clock::{Clock, TimestampDecision, seconds_of};
+use crate::field::NumberType;
 use crate::mavlink::decoder::{Payload, ServoOutputs, number};
 
 /// Messages that begin with the milliseconds since boot: ATTITUDE and ATTITUDE_TARGET.
@@ -21,7 +21,7 @@ pub(super) struct VehicleTime {
 
 /// Motor commands and their times.
 #[derive(Default)]
-pub(super) struct Timed {
+pub(super) struct TimedCommands {
     /// The rows to accept now, in order.
     pub(super) rows: [Option<(f64, ServoOutputs)>; 2],
     /// Whether a row with a damaged time was dropped.
@@ -32,12 +32,12 @@ pub(super) struct Timed {
 
 impl VehicleTime {
     /// Processes motor commands that were received at `received_s`.
-    pub(super) fn commands(&mut self, received_s: f64, outputs: ServoOutputs) -> Timed {
+    pub(super) fn commands(&mut self, received_s: f64, outputs: ServoOutputs) -> TimedCommands {
         if outputs.time_us == 0 {
             let rows = [Some((self.guess_s(received_s), outputs)), None];
-            return Timed {
+            return TimedCommands {
                 rows,
-                ..Timed::default()
+                ..TimedCommands::default()
             };
         }
         let last_s = self.clock.now_s().or(self.waiting.map(|(t_s, _)| t_s));
@@ -45,21 +45,21 @@ impl VehicleTime {
         let checked = self.clock.check(stamp_s);
         let waited = self.waiting.take();
         let (rows, dropped) = match checked {
-            Checked::At(t_s) => ([Some((t_s, outputs)), None], false),
-            Checked::Refuted(t_s) => ([Some((t_s, outputs)), None], true),
-            Checked::Confirmed(first_s, t_s) => {
+            TimestampDecision::At(t_s) => ([Some((t_s, outputs)), None], false),
+            TimestampDecision::Refuted(t_s) => ([Some((t_s, outputs)), None], true),
+            TimestampDecision::Confirmed(first_s, t_s) => {
                 let first = waited.map(|(_, outputs)| (first_s, outputs));
                 ([first, Some((t_s, outputs))], false)
             }
-            Checked::Wait | Checked::RefutedWait => {
+            TimestampDecision::Wait | TimestampDecision::RefutedWait => {
                 self.waiting = Some((stamp_s, outputs));
-                ([None, None], checked == Checked::RefutedWait)
+                ([None, None], checked == TimestampDecision::RefutedWait)
             }
         };
         let latest_s = rows.iter().flatten().last().map(|(t_s, _)| *t_s);
         let before = self.latest;
         self.latest = latest_s.map(|t_s| (received_s, t_s)).or(before);
-        Timed {
+        TimedCommands {
             rows,
             dropped,
             ahead_s: latest_s
@@ -95,7 +95,9 @@ impl VehicleTime {
         let Some((_, commands_s)) = self.latest else {
             return guess_s;
         };
-        let own = BOOT_MS.contains(&id).then(|| number(payload, 0, Kind::U32));
+        let own = BOOT_MS
+            .contains(&id)
+            .then(|| number(payload, 0, NumberType::U32));
         // The clock continues across boots, while the clock of the message restarts.
         let own_s = own.flatten().map(|ms| ms * 1e-3 + self.clock.offset_s());
         own_s

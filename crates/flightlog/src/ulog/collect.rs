@@ -2,12 +2,12 @@
 
 use super::format::keyed_number;
 use super::outputs::Outputs;
-use super::plan::{Role, parts};
+use super::plan::{TopicRole, parts};
 use super::signals::SPECS;
 use super::topics::{Topics, key};
 use crate::clock::Latest;
 use crate::field::NumericField;
-use crate::geometry::{self, Declared};
+use crate::geometry::{self, DeclaredLayout};
 use crate::interval::both_hold;
 use crate::parameters::Parameters;
 use crate::signal::preferred;
@@ -35,7 +35,7 @@ pub(super) struct Collector<'o> {
     pub(super) report: Report,
     pub(super) topics: Topics,
     announced: usize,
-    roles: Vec<Option<(NumericField, Role)>>,
+    roles: Vec<Option<(NumericField, TopicRole)>>,
     latest: Latest,
     parameters: Parameters,
     outputs: Vec<Outputs>,
@@ -162,7 +162,7 @@ impl<'o> Collector<'o> {
         }
     }
 
-    fn role(&mut self, name: &str, instance: u8) -> Role {
+    fn role(&mut self, name: &str, instance: u8) -> TopicRole {
         let formats = &self.topics.formats;
         let find = |field: &str| formats.field(name, field);
         let commands = |topic: &'static str, field: &str| {
@@ -174,26 +174,26 @@ impl<'o> Collector<'o> {
             "actuator_outputs" => commands("actuator_outputs", "output"),
             THRUST if instance == 0 => commands(THRUST, "xyz"),
             "vehicle_status" if instance == 0 => {
-                return Role::Status {
+                return TopicRole::Status {
                     arming: find("arming_state"),
                     mode: find("nav_state"),
                     system_type: find("system_type"),
                 };
             }
             "vehicle_land_detected" if instance == 0 => {
-                return find("landed").map_or(Role::Nothing, Role::Land);
+                return find("landed").map_or(TopicRole::Nothing, TopicRole::Land);
             }
             _ if instance == 0 => {
                 let Some(spec) = SPECS.iter().find(|spec| spec.topic == name) else {
-                    return Role::Nothing;
+                    return TopicRole::Nothing;
                 };
                 let utc = find("time_utc_usec");
                 let parts = parts(spec, &find, self.options);
                 let (parts, labels): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
                 self.series.push((spec.topic, Series::new(labels)));
-                return Role::Series(self.series.len() - 1, parts, utc);
+                return TopicRole::Series(self.series.len() - 1, parts, utc);
             }
-            _ => return Role::Nothing,
+            _ => return TopicRole::Nothing,
         };
         let known = |outputs: &Outputs| outputs.topic == topic && outputs.instance == instance;
         let index = self.outputs.iter().position(known).unwrap_or_else(|| {
@@ -201,7 +201,7 @@ impl<'o> Collector<'o> {
             self.outputs.push(Outputs::new(topic, instance, width));
             self.outputs.len() - 1
         });
-        Role::Outputs(index, fields)
+        TopicRole::Outputs(index, fields)
     }
 
     /// Processes `D`: number of the topic, then its fields.
@@ -213,7 +213,7 @@ impl<'o> Collector<'o> {
         let Some((time, role)) = self.roles.get(index).and_then(Option::as_ref) else {
             return;
         };
-        if matches!(role, Role::Nothing) || self.report.leaves_out(false) {
+        if matches!(role, TopicRole::Nothing) || self.report.leaves_out(false) {
             return;
         }
         let Some(t_s) = time.number(body).map(|time_us| time_us * 1e-6) else {
@@ -224,8 +224,8 @@ impl<'o> Collector<'o> {
         }
         let flag = |field: &NumericField, yes: f64| Some(field.number(body)? == yes);
         match role {
-            Role::Nothing => {}
-            Role::Outputs(index, fields) => {
+            TopicRole::Nothing => {}
+            TopicRole::Outputs(index, fields) => {
                 let values = fields
                     .iter()
                     .map(|field| field.number(body).unwrap_or(f64::NAN) as f32);
@@ -234,7 +234,7 @@ impl<'o> Collector<'o> {
                 };
                 self.report.row(fields.len(), outputs.push(t_s, values));
             }
-            Role::Status {
+            TopicRole::Status {
                 arming,
                 mode,
                 system_type,
@@ -252,8 +252,8 @@ impl<'o> Collector<'o> {
                 let system_type = system_type.and_then(|field| field.number(body));
                 self.system_type = self.system_type.or(system_type);
             }
-            Role::Land(field) => self.report.state(&mut self.landed, t_s, flag(field, 1.0)),
-            Role::Series(index, parts, utc) => {
+            TopicRole::Land(field) => self.report.state(&mut self.landed, t_s, flag(field, 1.0)),
+            TopicRole::Series(index, parts, utc) => {
                 if let (None, Some(field)) = (self.utc_at_zero_s, utc) {
                     let utc_us = field.number(body).filter(|&utc_us| utc_us > 0.0);
                     self.utc_at_zero_s = utc_us.map(|utc_us| utc_us * 1e-6 - t_s);
@@ -311,7 +311,7 @@ impl<'o> Collector<'o> {
         let set_back = self.outputs.iter().flat_map(|of| of.set_back.at_s());
         let in_air = set_back.filter(|t_s| flight.is_in_air(**t_s) == Some(true));
         flight.rebooted_in_air_s = in_air.copied().reduce(f64::min).into_iter().collect();
-        flight.geometry = geometry::find(&flight, &Declared::of_px4(&self.parameters));
+        flight.geometry = geometry::find(&flight, &DeclaredLayout::of_px4(&self.parameters));
         flight
     }
 

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::field::{Kind, NumericField};
+use crate::field::{NumberType, NumericField};
 
 /// The maximum depth of nested topics; deeper nesting counts as damage.
 const DEEPEST: usize = 8;
@@ -30,18 +30,18 @@ pub(super) struct Formats {
 }
 
 /// The number type with the given name.
-fn kind_of(name: &str) -> Option<Kind> {
+fn kind_of(name: &str) -> Option<NumberType> {
     Some(match name {
-        "int8_t" => Kind::I8,
-        "uint8_t" | "bool" | "char" => Kind::U8,
-        "int16_t" => Kind::I16,
-        "uint16_t" => Kind::U16,
-        "int32_t" => Kind::I32,
-        "uint32_t" => Kind::U32,
-        "int64_t" => Kind::I64,
-        "uint64_t" => Kind::U64,
-        "float" => Kind::F32,
-        "double" => Kind::F64,
+        "int8_t" => NumberType::I8,
+        "uint8_t" | "bool" | "char" => NumberType::U8,
+        "int16_t" => NumberType::I16,
+        "uint16_t" => NumberType::U16,
+        "int32_t" => NumberType::I32,
+        "uint32_t" => NumberType::U32,
+        "int64_t" => NumberType::I64,
+        "uint64_t" => NumberType::U64,
+        "float" => NumberType::F32,
+        "double" => NumberType::F64,
         _ => return None,
     })
 }

@@ -1,7 +1,7 @@
 //! Commands of motors and outputs in logs of PX4.
 
 use crate::Commands;
-use crate::signal::{Order, SetBack};
+use crate::signal::{BackstepDetector, Order};
 
 /// The raw commands of one topic and instance.
 pub(super) struct Outputs {
@@ -11,7 +11,7 @@ pub(super) struct Outputs {
     /// Rows of `width` values.
     values: Vec<f32>,
     width: usize,
-    pub(super) set_back: SetBack,
+    pub(super) set_back: BackstepDetector,
 }
 
 impl Outputs {
@@ -22,7 +22,7 @@ impl Outputs {
             t_s: Vec::new(),
             values: Vec::new(),
             width,
-            set_back: SetBack::default(),
+            set_back: BackstepDetector::default(),
         }
     }
 

@@ -1,13 +1,13 @@
 //! The use of each ULog topic.
 
-use super::signals::{From, Spec};
+use super::signals::{SignalSource, TopicSpec};
 use crate::Options;
 use crate::angle::Angle;
 use crate::field::{NumericField, vector_length};
 use crate::signal::Label;
 
 /// The use of the messages of one topic.
-pub(super) enum Role {
+pub(super) enum TopicRole {
     Nothing,
     /// Commands of motors or outputs: index in `outputs`.
     Outputs(usize, Vec<NumericField>),
@@ -17,11 +17,11 @@ pub(super) enum Role {
         system_type: Option<NumericField>,
     },
     Land(NumericField),
-    Series(usize, Vec<Part>, Option<NumericField>),
+    Series(usize, Vec<ResolvedSource>, Option<NumericField>),
 }
 
 /// One signal of a series.
-pub(super) enum Part {
+pub(super) enum ResolvedSource {
     Field(NumericField, f64),
     Length(Vec<NumericField>),
     Position(NumericField, f64),
@@ -29,7 +29,7 @@ pub(super) enum Part {
     Angle(Angle, [NumericField; 4]),
 }
 
-impl Part {
+impl ResolvedSource {
     pub(super) fn value(&self, body: &[u8]) -> Option<f64> {
         match self {
             Self::Field(field, scale) => Some(field.number(body)? * scale),
@@ -52,28 +52,35 @@ impl Part {
 
 /// The signals that a topic contains and that the options request.
 pub(super) fn parts(
-    spec: &Spec,
+    spec: &TopicSpec,
     find: &impl Fn(&str) -> Option<NumericField>,
     options: &Options,
-) -> Vec<(Part, Label)> {
-    let part = |from: &From| {
+) -> Vec<(ResolvedSource, Label)> {
+    let part = |from: &SignalSource| {
         Some(match from {
-            From::Field(field, scale) => (Part::Field(find(field)?, *scale), (*field).to_owned()),
-            From::Length(fields) => {
+            SignalSource::Field(field, scale) => (
+                ResolvedSource::Field(find(field)?, *scale),
+                (*field).to_owned(),
+            ),
+            SignalSource::Length(fields) => {
                 let found = fields.iter().map(|field| find(field));
                 (
-                    Part::Length(found.collect::<Option<_>>()?),
+                    ResolvedSource::Length(found.collect::<Option<_>>()?),
                     fields.join(", "),
                 )
             }
-            From::Position(field, scale) => {
-                (Part::Position(find(field)?, *scale), (*field).to_owned())
-            }
-            From::If(field, flag) => (Part::If(find(field)?, find(flag)?), (*field).to_owned()),
-            From::Angle(angle, field) => {
+            SignalSource::Position(field, scale) => (
+                ResolvedSource::Position(find(field)?, *scale),
+                (*field).to_owned(),
+            ),
+            SignalSource::If(field, flag) => (
+                ResolvedSource::If(find(field)?, find(flag)?),
+                (*field).to_owned(),
+            ),
+            SignalSource::Angle(angle, field) => {
                 let element = |index| find(&format!("{field}[{index}]"));
                 let found = [element(0)?, element(1)?, element(2)?, element(3)?];
-                (Part::Angle(*angle, found), (*field).to_owned())
+                (ResolvedSource::Angle(*angle, found), (*field).to_owned())
             }
         })
     };

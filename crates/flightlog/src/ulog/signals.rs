@@ -3,7 +3,7 @@
 use crate::angle::Angle;
 
 /// How a signal is computed from the fields of a topic.
-pub(super) enum From {
+pub(super) enum SignalSource {
     /// A field, multiplied by a factor.
     Field(&'static str, f64),
     /// The length of the vector of these fields.
@@ -18,16 +18,16 @@ pub(super) enum From {
 
 /// The signals of one topic. Each has alternative computations (the first one whose fields the topic contains is used),
 /// a name and a unit.
-pub(super) struct Spec {
+pub(super) struct TopicSpec {
     pub(super) topic: &'static str,
-    pub(super) signals: &'static [(&'static [From], &'static str, &'static str)],
+    pub(super) signals: &'static [(&'static [SignalSource], &'static str, &'static str)],
 }
 
-use From::{Field, If, Length, Position};
+use SignalSource::{Field, If, Length, Position};
 
 const DEG: f64 = 180.0 / std::f64::consts::PI;
 
-const WIND: &[(&[From], &str, &str)] = &[
+const WIND: &[(&[SignalSource], &str, &str)] = &[
     (
         &[Field("windspeed_north", 1.0)],
         "ekf_wind_north_m_s",
@@ -41,7 +41,7 @@ const WIND: &[(&[From], &str, &str)] = &[
     ),
 ];
 
-const GPS: &[(&[From], &str, &str)] = &[
+const GPS: &[(&[SignalSource], &str, &str)] = &[
     (
         &[Position("latitude_deg", 1.0), Position("lat", 1e-7)],
         "latitude_deg",
@@ -60,7 +60,7 @@ const GPS: &[(&[From], &str, &str)] = &[
     (&[Field("vel_m_s", 1.0)], "ground_speed_m_s", "m/s"),
 ];
 
-const RADIO: &[(&[From], &str, &str)] = &[
+const RADIO: &[(&[SignalSource], &str, &str)] = &[
     (&[Field("rssi", 1.0)], "radio_rssi", ""),
     (
         &[Field("remote_rssi", 1.0), Field("rssi_remote", 1.0)],
@@ -71,10 +71,10 @@ const RADIO: &[(&[From], &str, &str)] = &[
 ];
 
 const fn outputs(
-    roll: &'static [From],
-    pitch: &'static [From],
-    yaw: &'static [From],
-) -> [(&'static [From], &'static str, &'static str); 3] {
+    roll: &'static [SignalSource],
+    pitch: &'static [SignalSource],
+    yaw: &'static [SignalSource],
+) -> [(&'static [SignalSource], &'static str, &'static str); 3] {
     [
         (roll, "roll_output", "1"),
         (pitch, "pitch_output", "1"),
@@ -83,8 +83,8 @@ const fn outputs(
 }
 
 /// The signals of each topic. If two topics contain the same signal, the first is preferred.
-pub(super) const SPECS: &[Spec] = &[
-    Spec {
+pub(super) const SPECS: &[TopicSpec] = &[
+    TopicSpec {
         topic: "vehicle_torque_setpoint",
         signals: &outputs(
             &[Field("xyz[0]", 1.0)],
@@ -92,7 +92,7 @@ pub(super) const SPECS: &[Spec] = &[
             &[Field("xyz[2]", 1.0)],
         ),
     },
-    Spec {
+    TopicSpec {
         topic: "actuator_controls_0",
         signals: &outputs(
             &[Field("control[0]", 1.0)],
@@ -100,35 +100,48 @@ pub(super) const SPECS: &[Spec] = &[
             &[Field("control[2]", 1.0)],
         ),
     },
-    Spec {
+    TopicSpec {
         topic: "vehicle_attitude",
         signals: &[
-            (&[From::Angle(Angle::Roll, "q")], "roll_deg", "deg"),
-            (&[From::Angle(Angle::Pitch, "q")], "pitch_deg", "deg"),
-            (&[From::Angle(Angle::Yaw, "q")], "yaw_deg", "deg"),
+            (&[SignalSource::Angle(Angle::Roll, "q")], "roll_deg", "deg"),
+            (
+                &[SignalSource::Angle(Angle::Pitch, "q")],
+                "pitch_deg",
+                "deg",
+            ),
+            (&[SignalSource::Angle(Angle::Yaw, "q")], "yaw_deg", "deg"),
         ],
     },
-    Spec {
+    TopicSpec {
         topic: "vehicle_attitude_setpoint",
         signals: &[
             (
-                &[Field("roll_body", DEG), From::Angle(Angle::Roll, "q_d")],
+                &[
+                    Field("roll_body", DEG),
+                    SignalSource::Angle(Angle::Roll, "q_d"),
+                ],
                 "roll_des_deg",
                 "deg",
             ),
             (
-                &[Field("pitch_body", DEG), From::Angle(Angle::Pitch, "q_d")],
+                &[
+                    Field("pitch_body", DEG),
+                    SignalSource::Angle(Angle::Pitch, "q_d"),
+                ],
                 "pitch_des_deg",
                 "deg",
             ),
             (
-                &[Field("yaw_body", DEG), From::Angle(Angle::Yaw, "q_d")],
+                &[
+                    Field("yaw_body", DEG),
+                    SignalSource::Angle(Angle::Yaw, "q_d"),
+                ],
                 "yaw_des_deg",
                 "deg",
             ),
         ],
     },
-    Spec {
+    TopicSpec {
         topic: "battery_status",
         signals: &[
             (&[Field("voltage_v", 1.0)], "battery_v", "V"),
@@ -137,14 +150,14 @@ pub(super) const SPECS: &[Spec] = &[
             (&[Field("remaining", 100.0)], "battery_remaining_pct", "%"),
         ],
     },
-    Spec {
+    TopicSpec {
         topic: "vehicle_global_position",
         signals: &[
             (&[Position("lat", 1.0)], "latitude_deg", "deg"),
             (&[Position("lon", 1.0)], "longitude_deg", "deg"),
         ],
     },
-    Spec {
+    TopicSpec {
         topic: "vehicle_local_position",
         signals: &[
             (&[If("x", "xy_valid")], "north_m", "m"),
@@ -153,7 +166,7 @@ pub(super) const SPECS: &[Spec] = &[
             (&[Field("vz", -1.0)], "climb_m_s", "m/s"),
         ],
     },
-    Spec {
+    TopicSpec {
         topic: "vehicle_imu_status",
         signals: &[
             (
@@ -164,39 +177,39 @@ pub(super) const SPECS: &[Spec] = &[
             (&[Field("accel_clipping", 1.0)], "accelerometer_clips", ""),
         ],
     },
-    Spec {
+    TopicSpec {
         topic: "estimator_status",
         signals: &[(&[Field("vibe[2]", 1.0)], "vibration_m_s2", "m/s2")],
     },
-    Spec {
+    TopicSpec {
         topic: "vehicle_gps_position",
         signals: GPS,
     },
-    Spec {
+    TopicSpec {
         topic: "sensor_gps",
         signals: GPS,
     },
-    Spec {
+    TopicSpec {
         topic: "input_rc",
         signals: &[(&[Field("rssi", 0.01)], "rc_rssi", "1")],
     },
-    Spec {
+    TopicSpec {
         topic: "radio_status",
         signals: RADIO,
     },
-    Spec {
+    TopicSpec {
         topic: "telemetry_status",
         signals: RADIO,
     },
-    Spec {
+    TopicSpec {
         topic: "wind",
         signals: WIND,
     },
-    Spec {
+    TopicSpec {
         topic: "estimator_wind",
         signals: WIND,
     },
-    Spec {
+    TopicSpec {
         topic: "wind_estimate",
         signals: WIND,
     },

@@ -7,7 +7,7 @@ use fuzzy::{
 };
 
 use super::lex;
-use crate::{Losses, blocks, draft::Draft, fll::handover};
+use crate::{Losses, blocks, fll::output_conditions, model_draft::ModelDraft};
 
 /// Reads the function block `name`, or the only one if it is `None`.
 pub(crate) fn read(
@@ -17,7 +17,7 @@ pub(crate) fn read(
 ) -> Result<Document, fuzzy::Findings> {
     let words = lex::words(text);
     let mut reader = Reader {
-        draft: Draft::new(text, losses),
+        draft: ModelDraft::new(text, losses),
         words: &words,
         next: 0,
         outputs: vec![],
@@ -39,7 +39,7 @@ pub(crate) fn read(
 pub(super) type Accumulation = Option<Option<Aggregation>>;
 
 pub(super) struct Reader<'r, 't> {
-    pub(super) draft: Draft<'t>,
+    pub(super) draft: ModelDraft<'t>,
     pub(super) words: &'r [&'t str],
     pub(super) next: usize,
     /// The names in VAR_OUTPUT.
@@ -232,7 +232,7 @@ impl<'r, 't> Reader<'r, 't> {
         blocks::aggregate(&mut self.draft.model, &found);
         blocks::settle(&mut self.draft.model, std::mem::take(&mut self.blocks));
         if self.is_fuzzylite {
-            handover::replace(&mut self.draft);
+            output_conditions::replace(&mut self.draft);
         }
         for name in &self.outputs {
             let has_terms = self

@@ -6,7 +6,7 @@ use fuzzy::{
 };
 
 use super::{read::Reader, term::is_number};
-use crate::{Format, blocks, conditions::dual, draft::MOST_BLOCKS, rules, words};
+use crate::{Format, blocks, conditions::dual, model_draft::MOST_BLOCKS, rules, words};
 
 impl Reader<'_, '_> {
     /// Reads `KEY : WORD;`.

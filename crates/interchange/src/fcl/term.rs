@@ -7,9 +7,8 @@ use fuzzy::{
 };
 
 use crate::{
-    Format,
-    draft::{Draft, number},
-    formula,
+    Format, formula,
+    model_draft::{ModelDraft, number},
     shapes::{self, Shape},
 };
 
@@ -30,7 +29,7 @@ pub(super) fn is_named(words: &[&str]) -> bool {
 
 /// Reads a term from the words after `:=`. In an output with computed values a number is a constant.
 pub(super) fn read(
-    draft: &mut Draft<'_>,
+    draft: &mut ModelDraft<'_>,
     variable: &str,
     name: &str,
     words: &[&str],
@@ -67,7 +66,7 @@ pub(super) fn read(
 }
 
 fn shape<'t>(
-    draft: &mut Draft<'_>,
+    draft: &mut ModelDraft<'_>,
     variable: &str,
     shape: &str,
     words: &[&'t str],
@@ -116,7 +115,7 @@ fn shape<'t>(
 
 /// Reads `(x, y) (x, y) ...`.
 fn points<'t>(
-    draft: &mut Draft<'_>,
+    draft: &mut ModelDraft<'_>,
     words: &[&'t str],
 ) -> Option<(MembershipFunction, Vec<&'t str>)> {
     let mut points = vec![];

@@ -8,8 +8,8 @@ use fuzzy::{
 
 use super::{extent::extent, read::Reader, term};
 use crate::{
-    draft::MOST_VARIABLES,
     fll::{self, habits},
+    model_draft::MOST_VARIABLES,
     words,
 };
 

@@ -9,15 +9,16 @@ use fuzzy::{
 };
 
 use crate::{
-    Format, Losses, Written,
+    Format, Losses, WriteResult,
     blocks::{self, Rules},
     formula,
-    names::{self, Allowed},
-    paper::{Paper, named, numbers, one_line},
-    rules, shapes, words,
+    names::{self, NameRules},
+    rules, shapes,
+    text_draft::{TextDraft, named, numbers, one_line},
+    words,
 };
 
-const NAMES: Allowed = Allowed {
+const NAMES: NameRules = NameRules {
     is_letter: names::is_plain,
     is_first: names::is_plain_first,
     keywords: &[
@@ -63,54 +64,54 @@ const NAMES: Allowed = Allowed {
     ],
 };
 
-pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> {
-    let mut paper = Paper::new(Format::Fcl, losses, model);
-    let model = names::plain(model, &NAMES, &mut paper);
-    let name = names::one(&model.name, &NAMES, &mut paper);
+pub(crate) fn write(model: &Model, losses: Losses) -> Result<WriteResult, Findings> {
+    let mut draft = TextDraft::new(Format::Fcl, losses, model);
+    let model = names::plain(model, &NAMES, &mut draft);
+    let name = names::one(&model.name, &NAMES, &mut draft);
     if let Some(description) = &model.description {
-        paper.line(format!(
+        draft.line(format!(
             "(* {} *)",
             one_line(&description.replace("*)", ""))
         ));
     }
-    paper.line(format!("FUNCTION_BLOCK {name}\n\nVAR_INPUT"));
+    draft.line(format!("FUNCTION_BLOCK {name}\n\nVAR_INPUT"));
     for input in &model.inputs {
-        paper.line(format!("  {} : REAL;", input.name));
+        draft.line(format!("  {} : REAL;", input.name));
     }
-    paper.line("END_VAR\n\nVAR_OUTPUT");
+    draft.line("END_VAR\n\nVAR_OUTPUT");
     for output in &model.outputs {
-        paper.line(format!("  {} : REAL;", output.variable.name));
+        draft.line(format!("  {} : REAL;", output.variable.name));
     }
-    paper.line("END_VAR");
+    draft.line("END_VAR");
     for input in &model.inputs {
-        paper.line(format!("\nFUZZIFY {}", input.name));
-        terms(&mut paper, input, false);
-        paper.line("END_FUZZIFY");
+        draft.line(format!("\nFUZZIFY {}", input.name));
+        terms(&mut draft, input, false);
+        draft.line("END_FUZZIFY");
     }
     for output in &model.outputs {
         let name = &output.variable.name;
-        paper.line(format!("\nDEFUZZIFY {name}"));
+        draft.line(format!("\nDEFUZZIFY {name}"));
         let computes = words::is_weighted(output.defuzzifier);
         match output.defuzzifier {
-            Defuzzifier::WeightedAverage => terms(&mut paper, &widened(output), computes),
-            _ => terms(&mut paper, &output.variable, computes),
+            Defuzzifier::WeightedAverage => terms(&mut draft, &widened(output), computes),
+            _ => terms(&mut draft, &output.variable, computes),
         }
-        let word = paper.word(words::DEFUZZIFIERS, output.defuzzifier, "the defuzzifier");
-        paper.line(format!("  METHOD : {word};"));
+        let word = draft.word(words::DEFUZZIFIERS, output.defuzzifier, "the defuzzifier");
+        draft.line(format!("  METHOD : {word};"));
         // The sum of singletons weights each rule separately.
         let aggregation = match computes {
             true => Aggregation::Sum,
             false => output.aggregation.unwrap_or(model.operators.aggregation),
         };
-        let word = paper.word(words::AGGREGATIONS, aggregation, "the aggregation");
-        paper.line(format!("  ACCU : {word};"));
+        let word = draft.word(words::AGGREGATIONS, aggregation, "the aggregation");
+        draft.line(format!("  ACCU : {word};"));
         match output.when_no_rule_fires {
-            NoRuleFires::Value(value) => paper.line(format!("  DEFAULT := {value};")),
-            NoRuleFires::Previous(None) => paper.line("  DEFAULT := NC;"),
+            NoRuleFires::Value(value) => draft.line(format!("  DEFAULT := {value};")),
+            NoRuleFires::Previous(None) => draft.line("  DEFAULT := NC;"),
             NoRuleFires::Previous(Some(_)) => {
                 let message =
                     format!("`{name}` keeps its previous value, and has an initial value");
-                paper.loss(
+                draft.loss(
                     "no-rule-fires",
                     message,
                     "FCL supports either `NC` or a value",
@@ -120,20 +121,20 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
         }
         if output.clamp {
             let message = format!("`{name}` is clamped to its range");
-            paper.loss("clamp", message, "FCL does not clamp");
+            draft.loss("clamp", message, "FCL does not clamp");
         }
-        paper.line("END_DEFUZZIFY");
+        draft.line("END_DEFUZZIFY");
         if output.samples.is_some() {
             let message = format!("the output `{name}` is sampled, which FCL cannot express");
-            paper.note("sampled", message, "each program samples in its own way");
+            draft.note("sampled", message, "each program samples in its own way");
         }
     }
     let mut number = 0;
     for block in blocks::of(&model) {
-        rule_block(&mut paper, &block, &mut number);
+        rule_block(&mut draft, &block, &mut number);
     }
-    paper.line("\nEND_FUNCTION_BLOCK");
-    paper.finish()
+    draft.line("\nEND_FUNCTION_BLOCK");
+    draft.finish()
 }
 
 /// Returns the output with a range that contains all numbers of its terms, because the centroid of
@@ -151,19 +152,24 @@ fn widened(output: &Output) -> Variable {
 }
 
 /// Writes the range and the terms. If an output `computes` values, a constant is a value, otherwise a degree.
-fn terms(paper: &mut Paper, variable: &Variable, computes: bool) {
-    paper.line(format!(
+fn terms(draft: &mut TextDraft, variable: &Variable, computes: bool) {
+    draft.line(format!(
         "  RANGE := ({} .. {});",
         variable.low, variable.high
     ));
     for term in &variable.terms {
-        if let Some(shape) = shape(paper, term, variable, computes) {
-            paper.line(format!("  TERM {} := {shape};", term.name));
+        if let Some(shape) = shape(draft, term, variable, computes) {
+            draft.line(format!("  TERM {} := {shape};", term.name));
         }
     }
 }
 
-fn shape(paper: &mut Paper, term: &Term, variable: &Variable, computes: bool) -> Option<String> {
+fn shape(
+    draft: &mut TextDraft,
+    term: &Term,
+    variable: &Variable,
+    computes: bool,
+) -> Option<String> {
     use MembershipFunction as Of;
     let height = term.height;
     let points = |points: &[(f64, f64)]| {
@@ -200,14 +206,14 @@ fn shape(paper: &mut Paper, term: &Term, variable: &Variable, computes: bool) ->
             Some(at.to_string())
         }
         Of::Function { ref formula } if height == 1.0 => {
-            function(paper, term, variable);
+            function(draft, term, variable);
             Some(format!("FUNCTION {}", formula::write(formula, None)))
         }
         Of::Linear {
             ref coefficients,
             constant,
         } => {
-            function(paper, term, variable);
+            function(draft, term, variable);
             Some(format!("FUNCTION {}", linear(coefficients, constant)))
         }
         ref other => {
@@ -218,16 +224,16 @@ fn shape(paper: &mut Paper, term: &Term, variable: &Variable, computes: bool) ->
                     "only fuzzylite reads the shape `{}`, of the term {name}",
                     written.0
                 );
-                paper.note("not-in-iec", message, "write it as points: `piecewise`");
+                draft.note("not-in-iec", message, "write it as points: `piecewise`");
                 Some(written)
             });
             let help = "write it as points: `piecewise`";
             if written.is_none() {
                 let message = format!("the term {name} has a shape that FCL does not support");
-                paper.refuse("no-shape", message, help);
+                draft.refuse("no-shape", message, help);
             } else if height != 1.0 {
                 let message = format!("the term {name} has a height, which FCL does not support");
-                paper.loss("no-shape", message, help);
+                draft.loss("no-shape", message, help);
             }
             written.map(|(shape, parameters)| format!("{shape} {}", numbers(&parameters)))
         }
@@ -235,11 +241,11 @@ fn shape(paper: &mut Paper, term: &Term, variable: &Variable, computes: bool) ->
 }
 
 /// Reports that a term is a function.
-fn function(paper: &mut Paper, term: &Term, variable: &Variable) {
+fn function(draft: &mut TextDraft, term: &Term, variable: &Variable) {
     let name = named(term, variable);
     let message = format!("the term {name} is a function, which IEC 61131-7 does not define");
     let help = "jFuzzyLogic reads it in outputs with `COGS`";
-    paper.note("not-in-iec", message, help);
+    draft.note("not-in-iec", message, help);
 }
 
 /// Writes a linear function: `0.5 * food - 2 * service + 3`.
@@ -267,7 +273,7 @@ fn edges(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     points
 }
 
-fn rule_block(paper: &mut Paper, block: &Rules<'_>, number: &mut usize) {
+fn rule_block(draft: &mut TextDraft, block: &Rules<'_>, number: &mut usize) {
     let operators = block.operators;
     if !block.enabled {
         return;
@@ -277,11 +283,11 @@ fn rule_block(paper: &mut Paper, block: &Rules<'_>, number: &mut usize) {
             "the activation method of `{}` selects the rules that fire",
             block.name
         );
-        paper.loss("activation", message, "FCL has no activation methods");
+        draft.loss("activation", message, "FCL has no activation methods");
     }
-    let [and, or, implication] = paper.operators(operators);
-    let name = names::one(block.name, &NAMES, paper);
-    paper.line(format!(
+    let [and, or, implication] = draft.operators(operators);
+    let name = names::one(block.name, &NAMES, draft);
+    draft.line(format!(
         "\nRULEBLOCK {name}\n  AND : {and};\n  OR : {or};\n  ACT : {implication};"
     ));
     for (index, rule) in &block.rules {
@@ -289,16 +295,16 @@ fn rule_block(paper: &mut Paper, block: &Rules<'_>, number: &mut usize) {
             Some(rules) => {
                 for rule in rules {
                     *number += 1;
-                    paper.line(format!("  RULE {number} : {};", keywords(&rule)));
+                    draft.line(format!("  RULE {number} : {};", keywords(&rule)));
                 }
             }
             None => {
                 let message = format!("rule {index} has a NOT before brackets");
-                paper.loss("not", message, "write NOT before the terms");
+                draft.loss("not", message, "write NOT before the terms");
             }
         }
     }
-    paper.line("END_RULEBLOCK");
+    draft.line("END_RULEBLOCK");
 }
 
 /// The keywords in capitals, as IEC 61131-7 writes them.

@@ -8,7 +8,7 @@ use fuzzy::{
 use super::{rules, term};
 use crate::{
     Format, Losses,
-    draft::{self, Draft, MOST_VARIABLES},
+    model_draft::{self, MOST_VARIABLES, ModelDraft},
     shapes, words,
 };
 
@@ -50,7 +50,7 @@ impl<'t> Section<'t> {
 }
 
 pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findings> {
-    let mut draft = Draft::new(text, losses);
+    let mut draft = ModelDraft::new(text, losses);
     let sections = sections(&mut draft);
     let system = sections
         .iter()
@@ -127,7 +127,7 @@ pub(super) fn unquoted(word: &str) -> &str {
     word.trim().trim_matches(['\'', '"'])
 }
 
-fn sections<'t>(draft: &mut Draft<'t>) -> Vec<Section<'t>> {
+fn sections<'t>(draft: &mut ModelDraft<'t>) -> Vec<Section<'t>> {
     let mut sections: Vec<Section<'t>> = vec![];
     for line in draft.text.lines() {
         let line =
@@ -181,7 +181,7 @@ fn without_comment(line: &str) -> &str {
 }
 
 /// Whether the system is a Sugeno system; `None`, with an error, if its type is not supported.
-fn kind(draft: &mut Draft<'_>, system: &Section<'_>) -> Option<bool> {
+fn kind(draft: &mut ModelDraft<'_>, system: &Section<'_>) -> Option<bool> {
     let word = system.get("Type").unwrap_or("mamdani");
     match unquoted(word).to_ascii_lowercase().as_str() {
         "mamdani" => Some(false),
@@ -202,7 +202,7 @@ fn kind(draft: &mut Draft<'_>, system: &Section<'_>) -> Option<bool> {
     }
 }
 
-fn operators(draft: &mut Draft<'_>, system: &Section<'_>, weighted: bool) {
+fn operators(draft: &mut ModelDraft<'_>, system: &Section<'_>, weighted: bool) {
     if let Some(and) = word(draft, system, "AndMethod", words::CONJUNCTIONS) {
         draft.model.operators.and = and;
     }
@@ -234,7 +234,7 @@ fn operators(draft: &mut Draft<'_>, system: &Section<'_>, weighted: bool) {
 }
 
 fn word<T: Copy>(
-    draft: &mut Draft<'_>,
+    draft: &mut ModelDraft<'_>,
     system: &Section<'_>,
     key: &str,
     known: &'static words::Words<T>,
@@ -247,7 +247,7 @@ fn word<T: Copy>(
     draft.word(Format::Fis, known, &format!("`{key}`"), (word, written))
 }
 
-fn defuzzifier(draft: &mut Draft<'_>, system: &Section<'_>, weighted: bool) -> Defuzzifier {
+fn defuzzifier(draft: &mut ModelDraft<'_>, system: &Section<'_>, weighted: bool) -> Defuzzifier {
     let fallback = match weighted {
         true => Defuzzifier::WeightedAverage,
         false => Defuzzifier::Centroid,
@@ -267,7 +267,7 @@ fn defuzzifier(draft: &mut Draft<'_>, system: &Section<'_>, weighted: bool) -> D
 }
 
 fn variable(
-    draft: &mut Draft<'_>,
+    draft: &mut ModelDraft<'_>,
     section: &Section<'_>,
     inputs: &[&str],
     weighted: bool,
@@ -311,7 +311,12 @@ fn variable(
 }
 
 /// Makes a name distinct from those of the variable's other terms. Rules of FIS refer to terms by number, so names may be equal there.
-fn distinct(draft: &mut Draft<'_>, variable: &Variable, name: String, spans: &TermSpans) -> String {
+fn distinct(
+    draft: &mut ModelDraft<'_>,
+    variable: &Variable,
+    name: String,
+    spans: &TermSpans,
+) -> String {
     let taken = |name: &str| variable.terms.iter().any(|term| term.name == name);
     if !taken(&name) {
         return name;
@@ -339,9 +344,9 @@ pub(super) fn bracketed(text: &str) -> Vec<&str> {
 }
 
 /// A number, or an expression of numbers and `pi`, such as `-pi/4`, which MATLAB evaluates.
-pub(super) fn number(draft: &mut Draft<'_>, word: &str) -> Option<f64> {
+pub(super) fn number(draft: &mut ModelDraft<'_>, word: &str) -> Option<f64> {
     let is_arithmetic = |c: char| c.is_ascii_digit() || ".eEpi+-*/()".contains(c);
-    if draft::number(word).is_none()
+    if model_draft::number(word).is_none()
         && word.chars().all(is_arithmetic)
         && let Ok(formula) = word.parse::<Formula>()
         && formula.variables().len() == 0
@@ -355,7 +360,7 @@ pub(super) fn number(draft: &mut Draft<'_>, word: &str) -> Option<f64> {
 }
 
 /// Warns if a section has another number of parts than its key announces, as in a file that was cut off.
-fn count(draft: &mut Draft<'_>, section: &Section<'_>, key: &str, found: usize) {
+fn count(draft: &mut ModelDraft<'_>, section: &Section<'_>, key: &str, found: usize) {
     let Some(written) = section.get(key) else {
         return;
     };

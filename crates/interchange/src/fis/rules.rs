@@ -7,10 +7,10 @@ use fuzzy::{
     rule::{self, Condition, Consequent, Hedge, Name, Proposition},
 };
 
-use crate::draft::Draft;
+use crate::model_draft::ModelDraft;
 
 /// Reads a rule into the model.
-pub(super) fn read(draft: &mut Draft<'_>, line: &str) {
+pub(super) fn read(draft: &mut ModelDraft<'_>, line: &str) {
     let Some(parts) = parts(line) else {
         let message = format!("`{line}` is not a rule");
         let help = "with two inputs and one output a rule reads `1 2, 1 (1) : 1`";
@@ -133,7 +133,7 @@ fn parts(line: &str) -> Option<Parts<'_>> {
 }
 
 /// The term and hedges that a number in a rule refers to.
-struct Named {
+struct TermReference {
     variable: Name,
     term: Name,
     /// `NOT` and hedges of Octave.
@@ -142,7 +142,7 @@ struct Named {
     once_more: bool,
 }
 
-impl Named {
+impl TermReference {
     fn condition(self) -> Condition {
         let is = |hedges| {
             Condition::Is(Proposition {
@@ -167,10 +167,10 @@ impl Named {
 /// The term and hedges that a number in a rule refers to: `-2.3` is the second term with NOT and Octave's `extremely`;
 /// `None` for 0.
 fn proposition(
-    draft: &mut Draft<'_>,
+    draft: &mut ModelDraft<'_>,
     word: &str,
     variable: impl Fn(&Model) -> Option<&Variable>,
-) -> Result<Option<Named>, ()> {
+) -> Result<Option<TermReference>, ()> {
     let number = draft.number(word).ok_or(())?;
     let index = number.abs().trunc();
     if !number.is_finite() || (index == 0.0 && number != 0.0) {
@@ -207,7 +207,7 @@ fn proposition(
         text,
         span: span.clone(),
     };
-    Ok(Some(Named {
+    Ok(Some(TermReference {
         variable: named(name),
         term: named(term),
         hedges,
@@ -218,7 +218,7 @@ fn proposition(
 /// The hedges of Octave's toolkit, given by the digits after the decimal point, in hundredths. Its `extremely` is a
 /// cube: the square times the degree, which is expressed as a product of conditions.
 fn octave(
-    draft: &mut Draft<'_>,
+    draft: &mut ModelDraft<'_>,
     word: &str,
     hundredths: f64,
 ) -> Result<(&'static [Hedge], bool), ()> {

@@ -7,7 +7,7 @@ use fuzzy::{
 };
 
 use super::read::{bracketed, number, unquoted};
-use crate::{Format, draft::Draft, shapes};
+use crate::{Format, model_draft::ModelDraft, shapes};
 
 const OTHERS: [&str; 3] = ["discretemf", "constant", "linear"];
 
@@ -35,7 +35,7 @@ fn decimal_comma(parameters: &str) -> Option<&str> {
 }
 
 pub(super) fn read(
-    draft: &mut Draft<'_>,
+    draft: &mut ModelDraft<'_>,
     written: &str,
     inputs: &[&str],
 ) -> Option<(Term, TermSpans)> {

@@ -7,30 +7,31 @@ use fuzzy::{
 };
 
 use crate::{
-    Format, Losses, Written, conditions,
-    names::{self, Allowed},
-    paper::{Paper, named, numbers, one_line},
-    shapes, words,
+    Format, Losses, WriteResult, conditions,
+    names::{self, NameRules},
+    shapes,
+    text_draft::{TextDraft, named, numbers, one_line},
+    words,
 };
 
 /// Quotes end a name, and `:` follows a name.
-const NAMES: Allowed = Allowed {
+const NAMES: NameRules = NameRules {
     is_letter: |c| words::is_printable(c) && !matches!(c, '\'' | '"' | ':'),
     is_first: words::is_printable,
     keywords: &[],
 };
 
-pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> {
-    let mut paper = Paper::new(Format::Fis, losses, model);
-    let model = &names::plain(model, &NAMES, &mut paper);
-    system(&mut paper, model);
+pub(crate) fn write(model: &Model, losses: Losses) -> Result<WriteResult, Findings> {
+    let mut draft = TextDraft::new(Format::Fis, losses, model);
+    let model = &names::plain(model, &NAMES, &mut draft);
+    system(&mut draft, model);
     for (index, input) in model.inputs.iter().enumerate() {
-        paper.line(format!("\n[Input{}]", index + 1));
-        variable(&mut paper, input, model);
+        draft.line(format!("\n[Input{}]", index + 1));
+        variable(&mut draft, input, model);
     }
     for (index, output) in model.outputs.iter().enumerate() {
-        paper.line(format!("\n[Output{}]", index + 1));
-        variable(&mut paper, &output.variable, model);
+        draft.line(format!("\n[Output{}]", index + 1));
+        variable(&mut draft, &output.variable, model);
         let name = &output.variable.name;
         if !matches!(
             output.when_no_rule_fires,
@@ -38,7 +39,7 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
         ) {
             let message =
                 format!("`{name}` has a value if no rule fires, which FIS cannot express");
-            paper.loss(
+            draft.loss(
                 "no-rule-fires",
                 message,
                 "MATLAB gives the middle of the range",
@@ -46,7 +47,7 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
         }
         if output.clamp || output.aggregation.is_some() {
             let message = format!("`{name}` is clamped, or has an aggregation of its own");
-            paper.loss(
+            draft.loss(
                 "own",
                 message,
                 "FIS has one aggregation for all outputs, and does not clamp",
@@ -54,7 +55,7 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
         }
         if output.samples.is_some() {
             let message = format!("the output `{name}` is sampled, which FIS cannot express");
-            paper.note(
+            draft.note(
                 "sampled",
                 message,
                 "MATLAB samples 101 positions by default",
@@ -64,28 +65,28 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
     if !model.blocks.is_empty() || model.activation != Activation::General {
         let message =
             "the rules are in blocks, or an activation method selects those that fire".into();
-        paper.loss(
+        draft.loss(
             "blocks",
             message,
             "FIS has no blocks and no activation methods",
         );
     }
-    paper.line("\n[Rules]");
+    draft.line("\n[Rules]");
     for (index, rule) in model.rules.iter().enumerate() {
         match line(rule, model) {
-            Ok(line) => paper.line(line),
+            Ok(line) => draft.line(line),
             Err(what) => {
                 let message = format!("rule {} {what}", index + 1);
                 let help =
                     "a rule of FIS joins one term of each input, either all by AND or all by OR";
-                paper.loss("rule", message, help);
+                draft.loss("rule", message, help);
             }
         }
     }
-    paper.finish()
+    draft.finish()
 }
 
-fn system(paper: &mut Paper, model: &Model) {
+fn system(draft: &mut TextDraft, model: &Model) {
     let first = model
         .outputs
         .first()
@@ -96,43 +97,43 @@ fn system(paper: &mut Paper, model: &Model) {
         let message = "the outputs have different defuzzifiers".into();
         let help = "write a rule set for each output";
         match others.any(|other| words::is_weighted(other) != weighted) {
-            true => paper.refuse("two-defuzzifiers", message, help),
-            false => paper.loss("two-defuzzifiers", message, help),
+            true => draft.refuse("two-defuzzifiers", message, help),
+            false => draft.loss("two-defuzzifiers", message, help),
         }
     }
     let operators = model.operators;
     let quoted = |text: &str| format!("'{}'", one_line(&text.replace('\'', "")));
     if let Some(description) = &model.description {
-        paper.line(format!("% {}", one_line(description)));
+        draft.line(format!("% {}", one_line(description)));
     }
-    paper.line("[System]");
-    paper.line(format!("Name={}", quoted(&model.name)));
-    paper.line(format!(
+    draft.line("[System]");
+    draft.line(format!("Name={}", quoted(&model.name)));
+    draft.line(format!(
         "Type='{}'",
         if weighted { "sugeno" } else { "mamdani" }
     ));
-    paper.line("Version=2.0");
-    paper.line(format!("NumInputs={}", model.inputs.len()));
-    paper.line(format!("NumOutputs={}", model.outputs.len()));
+    draft.line("Version=2.0");
+    draft.line(format!("NumInputs={}", model.inputs.len()));
+    draft.line(format!("NumOutputs={}", model.outputs.len()));
     let rules = model.rules.iter().filter(|rule| line(rule, model).is_ok());
-    paper.line(format!("NumRules={}", rules.count()));
-    let [and, or, implication] = paper.operators(operators);
-    let aggregation = paper.word(
+    draft.line(format!("NumRules={}", rules.count()));
+    let [and, or, implication] = draft.operators(operators);
+    let aggregation = draft.word(
         words::AGGREGATIONS,
         operators.aggregation,
         "the aggregation",
     );
-    paper.line(format!("AndMethod='{and}'"));
-    paper.line(format!("OrMethod='{or}'"));
-    paper.line(format!(
+    draft.line(format!("AndMethod='{and}'"));
+    draft.line(format!("OrMethod='{or}'"));
+    draft.line(format!(
         "ImpMethod='{}'",
         if weighted { "prod" } else { implication }
     ));
-    paper.line(format!(
+    draft.line(format!(
         "AggMethod='{}'",
         if weighted { "sum" } else { aggregation }
     ));
-    let defuzzifier = paper.word(words::DEFUZZIFIERS, first, "the defuzzifier");
+    let defuzzifier = draft.word(words::DEFUZZIFIERS, first, "the defuzzifier");
     let outputs = &model.outputs;
     if outputs
         .iter()
@@ -140,34 +141,34 @@ fn system(paper: &mut Paper, model: &Model) {
     {
         let message = "FIS has no word for the defuzzifier `tsukamoto`".into();
         let help = "no method of a Sugeno system takes fuzzy sets as terms of its outputs";
-        paper.refuse("no-word", message, help);
+        draft.refuse("no-word", message, help);
     }
-    paper.line(format!("DefuzzMethod='{defuzzifier}'"));
+    draft.line(format!("DefuzzMethod='{defuzzifier}'"));
     let known = ["min", "max", "prod", "probor", "sum"];
     for word in [and, or, implication, aggregation] {
         if !known.contains(&word) {
             let message = format!("MATLAB has no method `{word}`");
-            paper.note("not-in-matlab", message, "Octave and fuzzylite read it");
+            draft.note("not-in-matlab", message, "Octave and fuzzylite read it");
         }
     }
 }
 
-fn variable(paper: &mut Paper, variable: &Variable, model: &Model) {
-    paper.line(format!("Name='{}'", variable.name));
-    paper.line(format!("Range=[{} {}]", variable.low, variable.high));
-    paper.line(format!("NumMFs={}", variable.terms.len()));
+fn variable(draft: &mut TextDraft, variable: &Variable, model: &Model) {
+    draft.line(format!("Name='{}'", variable.name));
+    draft.line(format!("Range=[{} {}]", variable.low, variable.high));
+    draft.line(format!("NumMFs={}", variable.terms.len()));
     for (index, term) in variable.terms.iter().enumerate() {
-        let Some((shape, parameters)) = shape(paper, term, variable, model) else {
+        let Some((shape, parameters)) = shape(draft, term, variable, model) else {
             continue;
         };
         let parameters = numbers(&parameters);
         let (number, name) = (index + 1, &term.name);
-        paper.line(format!("MF{number}='{name}':'{shape}',[{parameters}]"));
+        draft.line(format!("MF{number}='{name}':'{shape}',[{parameters}]"));
     }
 }
 
 fn shape(
-    paper: &mut Paper,
+    draft: &mut TextDraft,
     term: &Term,
     variable: &Variable,
     model: &Model,
@@ -176,7 +177,7 @@ fn shape(
     let name = named(term, variable);
     if term.height != 1.0 {
         let message = format!("the term {name} has the height {}", term.height);
-        paper.loss("height", message, "terms of FIS have the height 1");
+        draft.loss("height", message, "terms of FIS have the height 1");
     }
     // A shape that MATLAB lacks is replaced by one that is equal within the range. Octave does not accept flanks of
     // width 0.
@@ -196,7 +197,7 @@ fn shape(
             ref coefficients,
             constant,
         } => {
-            let mut each = paper.coefficients(&term.name, coefficients, model);
+            let mut each = draft.coefficients(&term.name, coefficients, model);
             each.push(constant);
             Some(("linear", each))
         }
@@ -209,11 +210,11 @@ fn shape(
     match written {
         None => {
             let message = format!("the term {name} has a shape that FIS does not support");
-            paper.refuse("no-shape", message, "write it as points: `piecewise`");
+            draft.refuse("no-shape", message, "write it as points: `piecewise`");
         }
         Some((shape @ ("discretemf" | "cosinemf" | "spikemf" | "concavemf"), _)) => {
             let message = format!("MATLAB has no shape `{shape}`, of the term {name}");
-            paper.note("not-in-matlab", message, "fuzzylite reads it");
+            draft.note("not-in-matlab", message, "fuzzylite reads it");
         }
         Some(_) => {}
     }

@@ -5,7 +5,7 @@ use fuzzy::{
     model::{Defuzzifier, Output, Term, Variable},
 };
 
-use crate::{draft::Draft, shapes};
+use crate::{model_draft::ModelDraft, shapes};
 
 /// A weighted average over fuzzy sets is Tsukamoto's: fuzzylite derives the kind from the terms.
 pub(crate) fn tsukamoto(output: &mut Output) {
@@ -18,7 +18,7 @@ pub(crate) fn tsukamoto(output: &mut Output) {
 
 /// Adds a term to a variable, unless it has one with that name: rules refer to the first one.
 pub(crate) fn add(
-    draft: &mut Draft<'_>,
+    draft: &mut ModelDraft<'_>,
     (variable, spans): (&mut Variable, &mut VariableSpans),
     (term, span): (Term, TermSpans),
     part: &str,

@@ -5,7 +5,7 @@ pub(crate) use write::write;
 
 mod activation;
 pub(crate) mod habits;
-pub(crate) mod handover;
+pub(crate) mod output_conditions;
 mod read;
 pub(crate) mod term;
 mod write;

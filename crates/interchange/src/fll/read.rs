@@ -6,23 +6,23 @@ use fuzzy::{
     model::{Aggregation, Block, NoRuleFires, Output, Rule, Sampling, SamplingRule, Variable},
 };
 
-use super::{activation, habits, handover, term};
+use super::{activation, habits, output_conditions, term};
 use crate::{
     Format, Losses, blocks,
-    draft::{Draft, MOST_BLOCKS, MOST_VARIABLES},
+    model_draft::{MOST_BLOCKS, MOST_VARIABLES, ModelDraft},
     rules, words,
 };
 
 /// A section and its lines.
 struct Section<'t> {
-    kind: Kind,
+    kind: SectionKind,
     /// The name after the word of the section.
     name: &'t str,
     entries: Vec<Entry<'t>>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum SectionKind {
     Engine,
     Input,
     Output,
@@ -36,13 +36,13 @@ struct Entry<'t> {
     value: &'t str,
 }
 
-impl Kind {
-    fn of(word: &str) -> Option<Kind> {
+impl SectionKind {
+    fn of(word: &str) -> Option<SectionKind> {
         Some(match word {
-            "Engine" => Kind::Engine,
-            "InputVariable" => Kind::Input,
-            "OutputVariable" => Kind::Output,
-            "RuleBlock" => Kind::Rules,
+            "Engine" => SectionKind::Engine,
+            "InputVariable" => SectionKind::Input,
+            "OutputVariable" => SectionKind::Output,
+            "RuleBlock" => SectionKind::Rules,
             _ => return None,
         })
     }
@@ -50,9 +50,9 @@ impl Kind {
     /// The keys of a section; those of fuzzylite 5 are last.
     fn keys(self) -> &'static [&'static str] {
         match self {
-            Kind::Engine => &["description"],
-            Kind::Input => &["description", "enabled", "range", "lock-range", "term"],
-            Kind::Output => &[
+            SectionKind::Engine => &["description"],
+            SectionKind::Input => &["description", "enabled", "range", "lock-range", "term"],
+            SectionKind::Output => &[
                 "description",
                 "enabled",
                 "range",
@@ -65,7 +65,7 @@ impl Kind {
                 "accumulation",
                 "lock-valid",
             ],
-            Kind::Rules => &[
+            SectionKind::Rules => &[
                 "description",
                 "enabled",
                 "conjunction",
@@ -92,17 +92,17 @@ impl<'t> Section<'t> {
 }
 
 pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findings> {
-    let mut draft = Draft::new(text, losses);
+    let mut draft = ModelDraft::new(text, losses);
     let sections = sections(&mut draft);
     let of = |kind| sections.iter().filter(move |section| section.kind == kind);
-    let engine = of(Kind::Engine).next();
+    let engine = of(SectionKind::Engine).next();
     draft.model.name = engine.map_or("", |engine| engine.name).to_owned();
     if draft.model.name.is_empty() {
         draft.model.name = "unnamed".into();
     }
     draft.model.description = engine.and_then(description);
-    let inputs: Vec<&str> = of(Kind::Input).map(|input| input.name).collect();
-    for section in of(Kind::Input) {
+    let inputs: Vec<&str> = of(SectionKind::Input).map(|input| input.name).collect();
+    for section in of(SectionKind::Input) {
         let count = draft.model.inputs.len();
         if !draft.has_room(count, MOST_VARIABLES, "inputs", section.name) {
             break;
@@ -115,16 +115,16 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
             draft.spans.inputs.push(spans);
         }
     }
-    for section in of(Kind::Output) {
+    for section in of(SectionKind::Output) {
         let count = draft.model.outputs.len();
         if !draft.has_room(count, MOST_VARIABLES, "outputs", section.name) {
             return draft.finish();
         }
         output(&mut draft, section, &inputs);
     }
-    blocks(&mut draft, &of(Kind::Rules).collect::<Vec<_>>());
-    aggregate(&mut draft, &of(Kind::Output).collect::<Vec<_>>());
-    handover::replace(&mut draft);
+    blocks(&mut draft, &of(SectionKind::Rules).collect::<Vec<_>>());
+    aggregate(&mut draft, &of(SectionKind::Output).collect::<Vec<_>>());
+    output_conditions::replace(&mut draft);
     draft.finish()
 }
 
@@ -136,7 +136,7 @@ fn description(section: &Section<'_>) -> Option<String> {
 }
 
 /// The sections of a text. Lines before the first one, and lines that are not `key: value`, are errors.
-fn sections<'t>(draft: &mut Draft<'t>) -> Vec<Section<'t>> {
+fn sections<'t>(draft: &mut ModelDraft<'t>) -> Vec<Section<'t>> {
     let mut sections: Vec<Section<'t>> = vec![];
     for line in draft.text.lines() {
         let line = line.split('#').next().unwrap_or("");
@@ -163,7 +163,7 @@ fn sections<'t>(draft: &mut Draft<'t>) -> Vec<Section<'t>> {
             continue;
         };
         let (key, value) = (key.trim(), value.trim());
-        if let Some(kind) = Kind::of(key) {
+        if let Some(kind) = SectionKind::of(key) {
             sections.push(Section {
                 kind,
                 name: value,
@@ -193,11 +193,11 @@ fn sections<'t>(draft: &mut Draft<'t>) -> Vec<Section<'t>> {
 }
 
 /// Whether a section is enabled.
-fn is_enabled(draft: &mut Draft<'_>, section: &Section<'_>) -> bool {
+fn is_enabled(draft: &mut ModelDraft<'_>, section: &Section<'_>) -> bool {
     flag(draft, section, "enabled").unwrap_or(true)
 }
 
-fn flag(draft: &mut Draft<'_>, section: &Section<'_>, key: &str) -> Option<bool> {
+fn flag(draft: &mut ModelDraft<'_>, section: &Section<'_>, key: &str) -> Option<bool> {
     let word = section.get(key)?;
     match word {
         "true" => Some(true),
@@ -211,7 +211,7 @@ fn flag(draft: &mut Draft<'_>, section: &Section<'_>, key: &str) -> Option<bool>
 }
 
 fn variable(
-    draft: &mut Draft<'_>,
+    draft: &mut ModelDraft<'_>,
     section: &Section<'_>,
     inputs: &[&str],
 ) -> Option<(Variable, VariableSpans)> {
@@ -256,7 +256,7 @@ fn variable(
     Some((variable, spans))
 }
 
-fn output(draft: &mut Draft<'_>, section: &Section<'_>, inputs: &[&str]) {
+fn output(draft: &mut ModelDraft<'_>, section: &Section<'_>, inputs: &[&str]) {
     let Some((variable, mut spans)) = variable(draft, section, inputs) else {
         return;
     };
@@ -287,7 +287,7 @@ fn output(draft: &mut Draft<'_>, section: &Section<'_>, inputs: &[&str]) {
 }
 
 /// Reads `Centroid 100` or `WeightedAverage Automatic`.
-fn defuzzifier(draft: &mut Draft<'_>, written: &str, output: &mut Output) {
+fn defuzzifier(draft: &mut ModelDraft<'_>, written: &str, output: &mut Output) {
     let mut parts = written.split_whitespace();
     let word = parts.next().unwrap_or("");
     let words = words::DEFUZZIFIERS;
@@ -320,7 +320,7 @@ fn defuzzifier(draft: &mut Draft<'_>, written: &str, output: &mut Output) {
 
 /// The operator in a section, if it is present.
 fn operator<T: Copy>(
-    draft: &mut Draft<'_>,
+    draft: &mut ModelDraft<'_>,
     section: &Section<'_>,
     key: &'static str,
     words: &words::Words<T>,
@@ -333,7 +333,7 @@ fn operator<T: Copy>(
 }
 
 /// The rules of all blocks.
-fn blocks(draft: &mut Draft<'_>, sections: &[&Section<'_>]) {
+fn blocks(draft: &mut ModelDraft<'_>, sections: &[&Section<'_>]) {
     let mut blocks = vec![];
     for (index, section) in sections.iter().enumerate() {
         if !draft.has_room(index, MOST_BLOCKS, "rule blocks", section.name) {
@@ -390,7 +390,7 @@ fn blocks(draft: &mut Draft<'_>, sections: &[&Section<'_>]) {
 }
 
 /// The aggregation of each output.
-fn aggregate(draft: &mut Draft<'_>, outputs: &[&Section<'_>]) {
+fn aggregate(draft: &mut ModelDraft<'_>, outputs: &[&Section<'_>]) {
     let mut found = vec![];
     for section in outputs {
         let key = match section.get("accumulation") {

@@ -6,14 +6,14 @@ use fuzzy::{
     model::{MembershipFunction, Term},
 };
 
-use crate::{Format, draft::Draft, formula, shapes};
+use crate::{Format, formula, model_draft::ModelDraft, shapes};
 
 /// Shapes with a variable number of parameters.
 const OTHERS: [&str; 5] = ["Discrete", "Constant", "Linear", "Function", "Binary"];
 
 /// Reads `NAME Shape PARAMETER...`.
 pub(super) fn read(
-    draft: &mut Draft<'_>,
+    draft: &mut ModelDraft<'_>,
     written: &str,
     inputs: &[&str],
     own: Option<&str>,
@@ -31,7 +31,7 @@ pub(super) fn read(
 
 /// Reads a term from `Shape PARAMETER...`. `own` is the variable that a formula calls `x`, if the term is a fuzzy set.
 pub(crate) fn of_shape(
-    draft: &mut Draft<'_>,
+    draft: &mut ModelDraft<'_>,
     name: &str,
     written: &str,
     inputs: &[&str],
@@ -126,7 +126,7 @@ fn points(numbers: &[f64]) -> (MembershipFunction, usize) {
 
 /// A step up at a position, or down if the direction is less than the position, such as `-inf`; `part` is the shape in
 /// the text.
-fn binary(draft: &mut Draft<'_>, numbers: &[f64], part: &str) -> Option<MembershipFunction> {
+fn binary(draft: &mut ModelDraft<'_>, numbers: &[f64], part: &str) -> Option<MembershipFunction> {
     let at = numbers.first().copied().unwrap_or(f64::NAN);
     let direction = numbers.get(1).copied().unwrap_or(f64::NAN);
     if direction > at {

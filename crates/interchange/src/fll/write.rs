@@ -7,15 +7,16 @@ use fuzzy::{
 
 use super::activation;
 use crate::{
-    Format, Losses, Written,
+    Format, Losses, WriteResult,
     blocks::{self, Rules},
     formula,
-    names::{self, Allowed},
-    paper::{Paper, numbers, one_line},
-    rules, shapes, words,
+    names::{self, NameRules},
+    rules, shapes,
+    text_draft::{TextDraft, numbers, one_line},
+    words,
 };
 
-const NAMES: Allowed = Allowed {
+const NAMES: NameRules = NameRules {
     is_letter: |c| names::is_plain(c) || c == '.',
     is_first: names::is_plain_first,
     keywords: &[
@@ -38,32 +39,32 @@ const NAMES: Allowed = Allowed {
 /// The number of samples that approximates an exact integral.
 const SAMPLES: usize = 1000;
 
-pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> {
-    let mut paper = Paper::new(Format::Fll, losses, model);
-    let model = names::plain(model, &NAMES, &mut paper);
-    paper.line(format!("Engine: {}", uncommented(&model.name)));
-    description(&mut paper, model.description.as_deref());
+pub(crate) fn write(model: &Model, losses: Losses) -> Result<WriteResult, Findings> {
+    let mut draft = TextDraft::new(Format::Fll, losses, model);
+    let model = names::plain(model, &NAMES, &mut draft);
+    draft.line(format!("Engine: {}", uncommented(&model.name)));
+    description(&mut draft, model.description.as_deref());
     for input in &model.inputs {
-        paper.line(format!("InputVariable: {}", input.name));
-        variable(&mut paper, input);
+        draft.line(format!("InputVariable: {}", input.name));
+        variable(&mut draft, input);
         // A rule set clamps values outside the range.
-        paper.line("  lock-range: true");
+        draft.line("  lock-range: true");
         for term in &input.terms {
-            self::term(&mut paper, term, &model, Some(&input.name));
+            self::term(&mut draft, term, &model, Some(&input.name));
         }
     }
     for output in &model.outputs {
-        self::output(&mut paper, output, &model);
+        self::output(&mut draft, output, &model);
     }
     for block in blocks::of(&model) {
-        rule_block(&mut paper, &block, &model);
+        rule_block(&mut draft, &block, &model);
     }
-    paper.finish()
+    draft.finish()
 }
 
-fn description(paper: &mut Paper, text: Option<&str>) {
+fn description(draft: &mut TextDraft, text: Option<&str>) {
     if let Some(text) = text {
-        paper.line(format!("  description: {}", uncommented(text)));
+        draft.line(format!("  description: {}", uncommented(text)));
     }
 }
 
@@ -72,16 +73,16 @@ fn uncommented(text: &str) -> String {
     one_line(&text.replace('#', " "))
 }
 
-fn variable(paper: &mut Paper, variable: &Variable) {
-    description(paper, variable.description.as_deref());
-    paper.line("  enabled: true");
-    paper.line(format!("  range: {} {}", variable.low, variable.high));
+fn variable(draft: &mut TextDraft, variable: &Variable) {
+    description(draft, variable.description.as_deref());
+    draft.line("  enabled: true");
+    draft.line(format!("  range: {} {}", variable.low, variable.high));
 }
 
-fn output(paper: &mut Paper, output: &Output, model: &Model) {
-    paper.line(format!("OutputVariable: {}", output.variable.name));
-    variable(paper, &output.variable);
-    paper.line(format!("  lock-range: {}", output.clamp));
+fn output(draft: &mut TextDraft, output: &Output, model: &Model) {
+    draft.line(format!("OutputVariable: {}", output.variable.name));
+    variable(draft, &output.variable);
+    draft.line(format!("  lock-range: {}", output.clamp));
     let computed = match output.defuzzifier {
         Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum => Some("TakagiSugeno"),
         Defuzzifier::Tsukamoto => Some("Tsukamoto"),
@@ -89,14 +90,14 @@ fn output(paper: &mut Paper, output: &Output, model: &Model) {
     };
     let aggregation = match computed {
         Some(_) => "none",
-        None => paper.word(
+        None => draft.word(
             words::AGGREGATIONS,
             output.aggregation.unwrap_or(model.operators.aggregation),
             "the aggregation",
         ),
     };
-    paper.line(format!("  aggregation: {aggregation}"));
-    let word = paper.word(words::DEFUZZIFIERS, output.defuzzifier, "the defuzzifier");
+    draft.line(format!("  aggregation: {aggregation}"));
+    let word = draft.word(words::DEFUZZIFIERS, output.defuzzifier, "the defuzzifier");
     let detail = match (computed, output.samples) {
         (Some(kind), _) => kind.to_owned(),
         (None, Some(sampling)) => sampling.samples.to_string(),
@@ -105,11 +106,11 @@ fn output(paper: &mut Paper, output: &Output, model: &Model) {
                 "fuzzylite samples the output `{}` at {SAMPLES} positions",
                 output.variable.name
             );
-            paper.note("sampled", message, "the rule set integrates exactly");
+            draft.note("sampled", message, "the rule set integrates exactly");
             SAMPLES.to_string()
         }
     };
-    paper.line(format!("  defuzzifier: {word} {detail}"));
+    draft.line(format!("  defuzzifier: {word} {detail}"));
     let default = match output.when_no_rule_fires {
         NoRuleFires::Value(value) | NoRuleFires::Previous(Some(value)) => value.to_string(),
         NoRuleFires::Undefined | NoRuleFires::Previous(None) => "nan".into(),
@@ -118,27 +119,27 @@ fn output(paper: &mut Paper, output: &Output, model: &Model) {
                 "the output `{}` is nan where no rule fires, not an error",
                 output.variable.name
             );
-            paper.note("no-error", message, "fuzzylite has no such error");
+            draft.note("no-error", message, "fuzzylite has no such error");
             "nan".into()
         }
     };
-    paper.line(format!("  default: {default}"));
+    draft.line(format!("  default: {default}"));
     let keeps = matches!(output.when_no_rule_fires, NoRuleFires::Previous(_));
-    paper.line(format!("  lock-previous: {keeps}"));
+    draft.line(format!("  lock-previous: {keeps}"));
     // A fuzzy set is a function of its own variable.
     let own = (!words::is_weighted(output.defuzzifier)).then_some(output.variable.name.as_str());
     for term in &output.variable.terms {
-        self::term(paper, term, model, own);
+        self::term(draft, term, model, own);
     }
 }
 
-fn term(paper: &mut Paper, term: &Term, model: &Model, own: Option<&str>) {
+fn term(draft: &mut TextDraft, term: &Term, model: &Model, own: Option<&str>) {
     use MembershipFunction as Of;
     if let Of::Function { formula } = &term.membership_function
         && term.height == 1.0
     {
         let formula = formula::write(formula, own);
-        paper.line(format!("  term: {} Function {formula}", term.name));
+        draft.line(format!("  term: {} Function {formula}", term.name));
         return;
     }
     let written = match &term.membership_function {
@@ -151,7 +152,7 @@ fn term(paper: &mut Paper, term: &Term, model: &Model, own: Option<&str>) {
             coefficients,
             constant,
         } => {
-            let mut each = paper.coefficients(&term.name, coefficients, model);
+            let mut each = draft.coefficients(&term.name, coefficients, model);
             each.push(*constant);
             Some(("Linear", each))
         }
@@ -162,28 +163,28 @@ fn term(paper: &mut Paper, term: &Term, model: &Model, own: Option<&str>) {
             "the term `{}` is a singleton among fuzzy sets, or a formula with a height",
             term.name
         );
-        paper.refuse("no-shape", message, "write it as points: `piecewise`");
+        draft.refuse("no-shape", message, "write it as points: `piecewise`");
         return;
     };
     if term.height != 1.0 && shape != "Linear" {
         parameters.push(term.height);
     }
-    paper.line(format!(
+    draft.line(format!(
         "  term: {} {shape} {}",
         term.name,
         numbers(&parameters)
     ));
 }
 
-fn rule_block(paper: &mut Paper, block: &Rules<'_>, model: &Model) {
+fn rule_block(draft: &mut TextDraft, block: &Rules<'_>, model: &Model) {
     let operators = block.operators;
-    paper.line(format!("RuleBlock: {}", uncommented(block.name)));
-    paper.line(format!("  enabled: {}", block.enabled));
-    let [and, or, implication] = paper.operators(operators);
-    paper.line(format!("  conjunction: {and}"));
-    paper.line(format!("  disjunction: {or}"));
-    paper.line(format!("  implication: {implication}"));
-    paper.line(format!(
+    draft.line(format!("RuleBlock: {}", uncommented(block.name)));
+    draft.line(format!("  enabled: {}", block.enabled));
+    let [and, or, implication] = draft.operators(operators);
+    draft.line(format!("  conjunction: {and}"));
+    draft.line(format!("  disjunction: {or}"));
+    draft.line(format!("  implication: {implication}"));
+    draft.line(format!(
         "  activation: {}",
         activation::write(block.activation)
     ));
@@ -193,16 +194,16 @@ fn rule_block(paper: &mut Paper, block: &Rules<'_>, model: &Model) {
             if model.outputs.iter().any(|output| output.variable.name == *name) {
                 let message = format!("rule {number} has a condition about the output `{name}`");
                 let help = "fuzzylite uses the degrees of the rules there, not the value: write a rule set for each stage";
-                paper.loss("chain", message, help);
+                draft.loss("chain", message, help);
             }
         });
         match rules::write(&rule.rule, operators, " and ") {
             Some(rules) => rules
                 .iter()
-                .for_each(|rule| paper.line(format!("  rule: {rule}"))),
+                .for_each(|rule| draft.line(format!("  rule: {rule}"))),
             None => {
                 let message = format!("rule {number} has a NOT before brackets");
-                paper.loss("not", message, "fuzzylite has `not` before a term only");
+                draft.loss("not", message, "fuzzylite has `not` before a term only");
             }
         }
     }

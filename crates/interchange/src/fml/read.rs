@@ -12,7 +12,7 @@ use roxmltree::Node;
 use super::term;
 use crate::{
     Format, Losses, blocks,
-    draft::{Draft, MOST_BLOCKS, MOST_VARIABLES},
+    model_draft::{MOST_BLOCKS, MOST_VARIABLES, ModelDraft},
     words,
 };
 
@@ -30,7 +30,7 @@ pub(super) const HEDGES: [(&str, Hedge); 6] = [
 ];
 
 pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findings> {
-    let mut draft = Draft::new(text, losses);
+    let mut draft = ModelDraft::new(text, losses);
     if let Some((part, message, help)) = too_large(text) {
         draft.error("too-large", part, message, help);
         return draft.finish();
@@ -165,7 +165,7 @@ fn too_large(text: &str) -> Option<(&str, String, &'static str)> {
 }
 
 struct Reader<'t> {
-    draft: Draft<'t>,
+    draft: ModelDraft<'t>,
     right_is_high: bool,
     /// The aggregation of each output.
     aggregations: Vec<Option<Aggregation>>,
@@ -241,7 +241,7 @@ impl Reader<'_> {
     /// The number in an attribute; `None` if there is none, or with an error if it is not a number.
     fn number(&mut self, node: Node<'_, '_>, name: &str) -> Option<f64> {
         let written = attribute(node, name)?;
-        let number = crate::draft::number(written.trim());
+        let number = crate::model_draft::number(written.trim());
         if number.is_none() {
             let message = format!("`{name}` is `{written}`, which is not a number");
             let part = tag(self.draft.text, node);

@@ -8,7 +8,7 @@ use fuzzy::{
 use roxmltree::Node;
 
 use super::read::{attribute, children, tag};
-use crate::draft::{Draft, number};
+use crate::model_draft::{ModelDraft, number};
 
 const SHAPES: [(&str, usize); 14] = [
     ("triangularShape", 3),
@@ -28,7 +28,7 @@ const SHAPES: [(&str, usize); 14] = [
 ];
 
 pub(super) fn read(
-    draft: &mut Draft<'_>,
+    draft: &mut ModelDraft<'_>,
     node: Node<'_, '_>,
     right_is_high: bool,
     range: (f64, f64),
@@ -145,7 +145,7 @@ fn function(
     })
 }
 
-fn points(draft: &mut Draft<'_>, shape: Node<'_, '_>) -> Option<MembershipFunction> {
+fn points(draft: &mut ModelDraft<'_>, shape: Node<'_, '_>) -> Option<MembershipFunction> {
     let method = attribute(shape, "interpolationMethod").unwrap_or("linear");
     if !method.eq_ignore_ascii_case("linear") {
         let message = format!("points are joined by the method `{method}`");
@@ -176,7 +176,7 @@ fn points(draft: &mut Draft<'_>, shape: Node<'_, '_>) -> Option<MembershipFuncti
 
 /// Reads a Takagi-Sugeno term: the constant, then a coefficient for each input.
 pub(super) fn tsk(
-    draft: &mut Draft<'_>,
+    draft: &mut ModelDraft<'_>,
     node: Node<'_, '_>,
     inputs: &[String],
 ) -> Option<(Term, TermSpans)> {

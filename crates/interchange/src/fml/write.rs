@@ -15,11 +15,11 @@ use quick_xml::{
 
 use super::read::{HEDGES, NAMESPACE};
 use crate::{
-    Format, Losses, Written,
+    Format, Losses, WriteResult,
     blocks::{self, Rules},
     conditions,
-    names::{self, Allowed},
-    paper::{Paper, named, one_line},
+    names::{self, NameRules},
+    text_draft::{TextDraft, named, one_line},
     words,
 };
 
@@ -84,36 +84,36 @@ impl Element {
     }
 }
 
-const NAMES: Allowed = Allowed {
+const NAMES: NameRules = NameRules {
     is_letter: words::is_printable,
     is_first: words::is_printable,
     keywords: &[],
 };
 
-pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> {
-    let mut paper = Paper::new(Format::Fml, losses, model);
-    let model = &names::plain(model, &NAMES, &mut paper);
+pub(crate) fn write(model: &Model, losses: Losses) -> Result<WriteResult, Findings> {
+    let mut draft = TextDraft::new(Format::Fml, losses, model);
+    let model = &names::plain(model, &NAMES, &mut draft);
     let mut base = Element::new("knowledgeBase");
     for input in &model.inputs {
         base.push(variable(
-            &mut paper,
+            &mut draft,
             input,
             ["fuzzyVariable", "fuzzyTerm", "input"],
         ));
     }
     for output in &model.outputs {
-        base.push(self::output(&mut paper, output, model));
+        base.push(self::output(&mut draft, output, model));
     }
-    let mut kinds = model.outputs.iter().map(Kind::of);
-    let kind = kinds.next().unwrap_or(Kind::Mamdani);
+    let mut kinds = model.outputs.iter().map(RuleBaseKind::of);
+    let kind = kinds.next().unwrap_or(RuleBaseKind::Mamdani);
     if kinds.any(|other| other != kind) {
         let message = "the outputs are of different kinds".into();
         let help = "write one rule set each for the Mamdani, Takagi-Sugeno and Tsukamoto outputs";
-        paper.loss("two-kinds", message, help);
+        draft.loss("two-kinds", message, help);
     }
     let enabled = blocks::of(model).into_iter().filter(|block| block.enabled);
     let bases: Vec<Element> = enabled
-        .map(|block| rule_base(&mut paper, &block, kind))
+        .map(|block| rule_base(&mut draft, &block, kind))
         .collect();
     let root = Element::new("fuzzySystem")
         .with("xmlns", NAMESPACE)
@@ -125,30 +125,30 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
         .write_event(declaration)
         .and_then(|()| root.write(&mut writer));
     match written.map(|()| String::from_utf8(writer.into_inner())) {
-        Ok(Ok(text)) => paper.line(text),
-        _ => paper.loss(
+        Ok(Ok(text)) => draft.line(text),
+        _ => draft.loss(
             "xml",
             "the XML cannot be written".into(),
             "report it as a bug",
         ),
     }
-    paper.finish()
+    draft.finish()
 }
 
 /// The kind of outputs that a rule base concludes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum RuleBaseKind {
     Mamdani,
     Tsk,
     Tsukamoto,
 }
 
-impl Kind {
-    fn of(output: &Output) -> Kind {
+impl RuleBaseKind {
+    fn of(output: &Output) -> RuleBaseKind {
         match output.defuzzifier {
-            Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum => Kind::Tsk,
-            Defuzzifier::Tsukamoto => Kind::Tsukamoto,
-            _ => Kind::Mamdani,
+            Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum => RuleBaseKind::Tsk,
+            Defuzzifier::Tsukamoto => RuleBaseKind::Tsukamoto,
+            _ => RuleBaseKind::Mamdani,
         }
     }
 }
@@ -167,10 +167,10 @@ fn variable_element(name: &'static str, variable: &Variable, kind: &str) -> Elem
 }
 
 /// Writes a variable; `names` are the names of the element and of its terms, and the type.
-fn variable(paper: &mut Paper, variable: &Variable, names: [&'static str; 3]) -> Element {
+fn variable(draft: &mut TextDraft, variable: &Variable, names: [&'static str; 3]) -> Element {
     let mut element = variable_element(names[0], variable, names[2]);
     for term in &variable.terms {
-        if let Some(mut shape) = shape(paper, term, variable) {
+        if let Some(mut shape) = shape(draft, term, variable) {
             if names[1] == "tsukamotoTerm" && shape.name == "pointSetShape" {
                 shape.name = "pointSetMonotonicShape";
             }
@@ -183,38 +183,38 @@ fn variable(paper: &mut Paper, variable: &Variable, names: [&'static str; 3]) ->
     element
 }
 
-fn output(paper: &mut Paper, output: &Output, model: &Model) -> Element {
+fn output(draft: &mut TextDraft, output: &Output, model: &Model) -> Element {
     let name = &output.variable.name;
     if output.samples.is_some() {
         let message = format!("the output `{name}` is sampled, which FML cannot express");
-        paper.note("sampled", message, "each program samples in its own way");
+        draft.note("sampled", message, "each program samples in its own way");
     }
-    let mut element = match Kind::of(output) {
-        Kind::Tsk => {
+    let mut element = match RuleBaseKind::of(output) {
+        RuleBaseKind::Tsk => {
             if output.defuzzifier == Defuzzifier::WeightedSum {
                 let message = format!("the output `{name}` is a weighted sum");
-                paper.loss(
+                draft.loss(
                     "no-method",
                     message,
                     "FML supports only the weighted average",
                 );
             }
-            tsk(paper, output, model)
+            tsk(draft, output, model)
         }
-        Kind::Tsukamoto => {
+        RuleBaseKind::Tsukamoto => {
             let names = ["tsukamotoVariable", "tsukamotoTerm", "output"];
-            variable(paper, &output.variable, names).with("combination", "WA")
+            variable(draft, &output.variable, names).with("combination", "WA")
         }
-        Kind::Mamdani => {
+        RuleBaseKind::Mamdani => {
             let names = ["fuzzyVariable", "fuzzyTerm", "output"];
-            let element = variable(paper, &output.variable, names);
-            let accumulation = paper.word(
+            let element = variable(draft, &output.variable, names);
+            let accumulation = draft.word(
                 words::AGGREGATIONS,
                 output.aggregation.unwrap_or(model.operators.aggregation),
                 "the aggregation",
             );
             let defuzzifier =
-                paper.word(words::DEFUZZIFIERS, output.defuzzifier, "the defuzzifier");
+                draft.word(words::DEFUZZIFIERS, output.defuzzifier, "the defuzzifier");
             element
                 .with("accumulation", accumulation)
                 .with("defuzzifier", defuzzifier)
@@ -224,7 +224,7 @@ fn output(paper: &mut Paper, output: &Output, model: &Model) -> Element {
         NoRuleFires::Value(value) => element = element.with("defaultValue", value),
         NoRuleFires::Previous(_) => {
             let message = format!("`{name}` keeps its value where no rule fires");
-            paper.loss(
+            draft.loss(
                 "no-rule-fires",
                 message,
                 "FML supports only a default value",
@@ -234,13 +234,13 @@ fn output(paper: &mut Paper, output: &Output, model: &Model) -> Element {
     }
     if output.clamp {
         let message = format!("`{name}` is clamped to its range");
-        paper.loss("clamp", message, "FML does not clamp");
+        draft.loss("clamp", message, "FML does not clamp");
     }
     element
 }
 
 /// Writes a Takagi-Sugeno output: the constant of each term, then a coefficient for each input.
-fn tsk(paper: &mut Paper, output: &Output, model: &Model) -> Element {
+fn tsk(draft: &mut TextDraft, output: &Output, model: &Model) -> Element {
     let variable = &output.variable;
     let mut element = variable_element("tskVariable", variable, "output").with("combination", "WA");
     for term in &variable.terms {
@@ -249,7 +249,7 @@ fn tsk(paper: &mut Paper, output: &Output, model: &Model) -> Element {
                 coefficients,
                 constant,
             } => {
-                let mut each = paper.coefficients(&term.name, coefficients, model);
+                let mut each = draft.coefficients(&term.name, coefficients, model);
                 each.insert(0, *constant);
                 (each, 1)
             }
@@ -258,7 +258,7 @@ fn tsk(paper: &mut Paper, output: &Output, model: &Model) -> Element {
             _ => {
                 let message = format!("the term {} is a formula", named(term, variable));
                 let help = "FML has constants and linear functions";
-                paper.refuse("no-shape", message, help);
+                draft.refuse("no-shape", message, help);
                 continue;
             }
         };
@@ -273,7 +273,7 @@ fn tsk(paper: &mut Paper, output: &Output, model: &Model) -> Element {
     element
 }
 
-fn shape(paper: &mut Paper, term: &Term, variable: &Variable) -> Option<Element> {
+fn shape(draft: &mut TextDraft, term: &Term, variable: &Variable) -> Option<Element> {
     use MembershipFunction as Of;
     let numbered = |name: &'static str, parameters: &[f64]| {
         let with = |element: Element, (index, value): (usize, &f64)| {
@@ -284,7 +284,7 @@ fn shape(paper: &mut Paper, term: &Term, variable: &Variable) -> Option<Element>
     let name = named(term, variable);
     if term.height != 1.0 {
         let message = format!("the term {name} has the height {}", term.height);
-        paper.loss("height", message, "terms of FML have the height 1");
+        draft.loss("height", message, "terms of FML have the height 1");
     }
     let (low, high) = (variable.low, variable.high);
     let shape = match term.membership_function {
@@ -336,25 +336,25 @@ fn shape(paper: &mut Paper, term: &Term, variable: &Variable) -> Option<Element>
     };
     if shape.is_none() {
         let message = format!("the term {name} has a shape that FML does not support");
-        paper.refuse("no-shape", message, "write it as points: `piecewise`");
+        draft.refuse("no-shape", message, "write it as points: `piecewise`");
     }
     shape
 }
 
-fn rule_base(paper: &mut Paper, block: &Rules<'_>, outputs: Kind) -> Element {
+fn rule_base(draft: &mut TextDraft, block: &Rules<'_>, outputs: RuleBaseKind) -> Element {
     let operators = block.operators;
     if block.activation != Activation::General {
         let message = format!(
             "the activation method of `{}` selects the rules that fire",
             block.name
         );
-        paper.loss("activation", message, "FML has no activation methods");
+        draft.loss("activation", message, "FML has no activation methods");
     }
-    let [and, or, implication] = paper.operators(operators);
+    let [and, or, implication] = draft.operators(operators);
     let name = match outputs {
-        Kind::Mamdani => "mamdaniRuleBase",
-        Kind::Tsk => "tskRuleBase",
-        Kind::Tsukamoto => "tsukamotoRuleBase",
+        RuleBaseKind::Mamdani => "mamdaniRuleBase",
+        RuleBaseKind::Tsk => "tskRuleBase",
+        RuleBaseKind::Tsukamoto => "tsukamotoRuleBase",
     };
     let mut base = Element::new(name)
         .with("name", one_line(block.name))
@@ -367,7 +367,7 @@ fn rule_base(paper: &mut Paper, block: &Rules<'_>, outputs: Kind) -> Element {
             Err(what) => {
                 let message = format!("rule {number} {what}");
                 let help = "a rule of FML joins its clauses either all by AND or all by OR";
-                paper.loss("rule", message, help);
+                draft.loss("rule", message, help);
             }
         }
     }
@@ -378,7 +378,7 @@ fn rule(
     rule: &Rule,
     number: usize,
     operators: Operators,
-    outputs: Kind,
+    outputs: RuleBaseKind,
 ) -> Result<Element, &'static str> {
     let rule = &rule.rule;
     let condition = conditions::without_not(&rule.condition, operators);
@@ -403,8 +403,8 @@ fn rule(
         return Err("has a hedge in its conclusion");
     }
     let names = match outputs {
-        Kind::Tsk => ["tskRule", "tskConsequent", "tskThen", "tskClause"],
-        Kind::Mamdani | Kind::Tsukamoto => ["rule", "consequent", "then", "clause"],
+        RuleBaseKind::Tsk => ["tskRule", "tskConsequent", "tskThen", "tskClause"],
+        RuleBaseKind::Mamdani | RuleBaseKind::Tsukamoto => ["rule", "consequent", "then", "clause"],
     };
     let then = Element::new(names[2]).of(rule.consequents.iter().map(|consequent| {
         Element::new(names[3]).of([

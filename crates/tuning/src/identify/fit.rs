@@ -62,13 +62,13 @@ impl Sums {
 }
 
 /// Scales the range of an input to [-1, 1], so that a ridge has the same effect on all inputs.
-struct Scale {
+struct InputScale {
     input: usize,
     middle: f64,
     half: f64,
 }
 
-impl Scale {
+impl InputScale {
     fn of(&self, x: &dyn Fn(usize) -> f64) -> f64 {
         (x(self.input) - self.middle) / self.half
     }
@@ -147,10 +147,10 @@ impl Fit<'_> {
     }
 
     /// The scale of each input, for linear consequents.
-    fn scales(&self, data: &Data) -> Vec<Scale> {
+    fn scales(&self, data: &Data) -> Vec<InputScale> {
         let of = |input: usize| {
             let (low, high) = range(&data.inputs[input]);
-            Scale {
+            InputScale {
                 input,
                 middle: (low + high) / 2.0,
                 half: (high - low) / 2.0,

@@ -20,7 +20,7 @@ use fit::{Fit, RIDGE};
 use structure::{Axis, Structure};
 
 pub use model::MOST_TERMS;
-pub use validation::{Judged, judge};
+pub use validation::{IdentifyValidation, cross_validate};
 
 /// The kind of consequents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -90,20 +90,20 @@ impl Default for Identification {
 
 /// A model identified from data.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Identified {
+pub struct IdentifyResult {
     /// The model: a Takagi-Sugeno output, with the product as conjunction.
     pub model: Model,
     /// For each input of the model, the index of its column.
     pub columns: Vec<usize>,
     /// The steps of the search.
-    pub steps: Vec<Step>,
+    pub steps: Vec<IdentifyStep>,
     /// The number of term combinations without enough rows, which have no rule.
     pub without_rows: usize,
 }
 
 /// One step of the search.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Step {
+pub struct IdentifyStep {
     /// The input that was added or received another term.
     pub input: String,
     /// The number of terms of that input; for clusters, the number of clusters.
@@ -142,7 +142,7 @@ pub fn check_columns(columns: usize) -> Result<(), TuneError> {
 /// improve both afterwards.
 ///
 /// The error of a step is computed on rows that were not used for its consequents, but the steps were chosen by it, so
-/// it is optimistic. [`judge`] cross-validates the whole search.
+/// it is optimistic. [`cross_validate`] cross-validates the whole search.
 ///
 /// # Errors
 /// If the rows cannot be used, if a name is unknown, or if no input reduces the error.
@@ -170,7 +170,7 @@ pub fn identify(
     output: &str,
     data: &Data,
     settings: &Identification,
-) -> Result<Identified, TuneError> {
+) -> Result<IdentifyResult, TuneError> {
     data.check_columns(names.len(), Loss::Squared)?;
     check_columns(names.len())?;
     let data = &*data.weighted();
@@ -201,11 +201,13 @@ pub fn identify(
         wanted: &wanted,
     };
     let (structure, steps) = search.run();
-    let steps = steps.into_iter().map(|(input, terms, left_out)| Step {
-        input: names[input].clone(),
-        terms,
-        left_out,
-    });
+    let steps = steps
+        .into_iter()
+        .map(|(input, terms, left_out)| IdentifyStep {
+            input: names[input].clone(),
+            terms,
+            left_out,
+        });
     if structure.inputs().is_empty() {
         return Err(TuneError::NoInputHelps);
     }

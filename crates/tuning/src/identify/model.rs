@@ -12,7 +12,7 @@ use crate::{
 };
 
 use super::{
-    Identification, Identified,
+    Identification, IdentifyResult,
     fit::{Fit, RIDGE},
     structure::{Axis, Structure},
 };
@@ -48,7 +48,7 @@ pub(super) fn model(
     data: &Data,
     settings: &Identification,
     structure: &Structure,
-) -> Identified {
+) -> IdentifyResult {
     let kept = kept(data, settings, structure);
     let numbers = Fit {
         structure,
@@ -107,7 +107,7 @@ pub(super) fn model(
     }
     let mut model = model.output(concluded).build();
     model.operators.and = Conjunction::Product;
-    Identified {
+    IdentifyResult {
         model,
         columns,
         steps: Vec::new(),

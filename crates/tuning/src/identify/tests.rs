@@ -130,7 +130,7 @@ fn combinations_without_rows_have_no_rule() {
 fn a_curved_relation_is_predicted_better_than_by_a_line() {
     let (names, data) = rows(600, wave);
     let mut parts = Vec::new();
-    let judged = judge(
+    let validation = cross_validate(
         &names,
         "level",
         &data,
@@ -141,15 +141,15 @@ fn a_curved_relation_is_predicted_better_than_by_a_line() {
             ControlFlow::Continue(())
         },
     );
-    let judged = judged.unwrap().unwrap();
-    assert_eq!((judged.folds, parts), (4, vec![0, 1, 2, 3]));
-    assert!(judged.linear.value < judged.mean.value);
+    let validation = validation.unwrap().unwrap();
+    assert_eq!((validation.folds, parts), (4, vec![0, 1, 2, 3]));
+    assert!(validation.linear.value < validation.mean.value);
     assert!(
-        judged.identified.value < 0.6 * judged.linear.value,
-        "{judged:?}"
+        validation.identified.value < 0.6 * validation.linear.value,
+        "{validation:?}"
     );
-    assert!(judged.ratio.low > 0.0 && judged.ratio.high < 0.7);
-    let stopped = judge(
+    assert!(validation.ratio.low > 0.0 && validation.ratio.high < 0.7);
+    let stopped = cross_validate(
         &names,
         "level",
         &data,
@@ -164,7 +164,7 @@ fn a_curved_relation_is_predicted_better_than_by_a_line() {
 #[test]
 fn a_linear_relation_is_not_predicted_better_than_by_a_line() {
     let (names, data) = rows(400, |x, y| 2.0 * x - y + 1.0);
-    let judged = judge(
+    let validation = cross_validate(
         &names,
         "level",
         &data,
@@ -172,11 +172,11 @@ fn a_linear_relation_is_not_predicted_better_than_by_a_line() {
         5,
         &mut |_| ControlFlow::Continue(()),
     );
-    let judged = judged.unwrap().unwrap();
+    let validation = validation.unwrap().unwrap();
     // The standard deviation of uniform noise with a width of 0.1.
     assert!(
-        (judged.linear.value - 0.1 / 12_f64.sqrt()).abs() < 0.002,
-        "{judged:?}"
+        (validation.linear.value - 0.1 / 12_f64.sqrt()).abs() < 0.002,
+        "{validation:?}"
     );
-    assert!(judged.ratio.value > 1.0);
+    assert!(validation.ratio.value > 1.0);
 }

@@ -20,7 +20,7 @@ use super::{
 
 /// Cross-validation errors (root mean squares), in the unit of the output.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Judged {
+pub struct IdentifyValidation {
     /// The number of folds.
     pub folds: usize,
     /// The error of predicting the mean of the other rows.
@@ -42,14 +42,14 @@ pub struct Judged {
 ///
 /// # Errors
 /// As [`identify`].
-pub fn judge(
+pub fn cross_validate(
     names: &[String],
     output: &str,
     data: &Data,
     settings: &Identification,
     folds: u32,
     watch: &mut dyn FnMut(u32) -> ControlFlow<()>,
-) -> Result<Option<Judged>, TuneError> {
+) -> Result<Option<IdentifyValidation>, TuneError> {
     data.check_columns(names.len(), crate::Loss::Squared)?;
     let data = &*data.weighted();
     // Uses other folds than those for choosing steps.
@@ -103,7 +103,7 @@ pub fn judge(
         [mean, linear, identified, identified / linear]
     };
     let [mean, linear, identified, ratio] = folds.intervals(data, figures);
-    Ok(Some(Judged {
+    Ok(Some(IdentifyValidation {
         folds: count,
         mean,
         linear,

@@ -10,7 +10,7 @@ use fuzzy::{
 
 /// The condition of an antecedent on one variable.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Part {
+pub(crate) struct VariableCondition {
     pub(crate) variable: String,
     pub(crate) condition: Condition,
     /// The indices of the terms that satisfy the condition; `None` if it contains hedges other than
@@ -20,7 +20,7 @@ pub(crate) struct Part {
 
 /// Returns the parts of an antecedent, one for each variable, that are joined by AND; `None` if the
 /// antecedent is not such a conjunction.
-pub(crate) fn parts(model: &Model, condition: &Condition) -> Option<Vec<Part>> {
+pub(crate) fn parts(model: &Model, condition: &Condition) -> Option<Vec<VariableCondition>> {
     let mut found: Vec<(String, Vec<Condition>)> = Vec::new();
     for condition in conjuncts(condition) {
         let mut names = BTreeSet::new();
@@ -38,7 +38,7 @@ pub(crate) fn parts(model: &Model, condition: &Condition) -> Option<Vec<Part>> {
             1 => conditions.remove(0),
             _ => Condition::And(conditions),
         };
-        Some(Part {
+        Some(VariableCondition {
             terms: terms(variable(model, &name)?, &condition),
             variable: name,
             condition,
@@ -53,7 +53,7 @@ pub(crate) fn variable<'m>(model: &'m Model, name: &str) -> Option<&'m Variable>
 }
 
 /// Joins parts to an antecedent. Without parts it is always true: `variable IS any`.
-pub(crate) fn condition(parts: &[Part], variable: &str) -> Condition {
+pub(crate) fn condition(parts: &[VariableCondition], variable: &str) -> Condition {
     let mut conditions: Vec<Condition> = parts
         .iter()
         .flat_map(|part| conjuncts(&part.condition))

@@ -8,24 +8,24 @@ use fuzzy::{
     rule::{self, Consequent},
 };
 
-use super::antecedent::{Part, condition, one_of, parts, size, variable};
+use super::antecedent::{VariableCondition, condition, one_of, parts, size, variable};
 
 /// A rule, and the indices of the original rules that it replaces.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Standing {
+pub(crate) struct DerivedRule {
     pub(crate) rule: Rule,
     pub(crate) of: Vec<usize>,
 }
 
 /// The rules at their positions; `None` if a rule was removed.
-pub(crate) type Places = Vec<Option<Standing>>;
+pub(crate) type RuleSlots = Vec<Option<DerivedRule>>;
 
 /// A replacement of rules by other rules.
 #[derive(Debug, Clone)]
 pub(crate) struct Change {
     /// The positions that are emptied first.
     pub(crate) empty: Vec<usize>,
-    pub(crate) fill: Vec<(usize, Standing)>,
+    pub(crate) fill: Vec<(usize, DerivedRule)>,
     /// The reduction of the number of propositions.
     pub(crate) saved: usize,
     /// Whether an input is no longer named by any rule.
@@ -37,16 +37,16 @@ const MOST_FOR_ALL_SUBSETS: usize = 6;
 
 /// The changes that make rules shorter, largest reduction first. With `loose`, if outputs may change, also merges of
 /// rules with different consequents and weights.
-pub(crate) fn changes(model: &Model, places: &Places, loose: bool) -> Vec<Change> {
+pub(crate) fn changes(model: &Model, slots: &RuleSlots, loose: bool) -> Vec<Change> {
     let found = Finder {
         model,
-        rules: places
+        rules: slots
             .iter()
             .enumerate()
-            .filter_map(|(place, standing)| {
-                let standing = standing.as_ref()?;
-                let parts = parts(model, &standing.rule.rule.condition);
-                Some((place, standing, parts))
+            .filter_map(|(slot, derived)| {
+                let derived = derived.as_ref()?;
+                let parts = parts(model, &derived.rule.rule.condition);
+                Some((slot, derived, parts))
             })
             .collect(),
     };
@@ -71,14 +71,14 @@ pub(crate) fn rule_size(rule: &rule::Rule) -> usize {
 struct Finder<'a> {
     model: &'a Model,
     /// The position, the rule, and the parts of its antecedent if that is a conjunction of parts.
-    rules: Vec<(usize, &'a Standing, Option<Vec<Part>>)>,
+    rules: Vec<(usize, &'a DerivedRule, Option<Vec<VariableCondition>>)>,
 }
 
 /// A rule of a group whose members differ in one variable.
 struct Member<'a> {
-    place: usize,
-    standing: &'a Standing,
-    others: Vec<Part>,
+    slot: usize,
+    derived: &'a DerivedRule,
+    others: Vec<VariableCondition>,
     /// The index of the part for that variable.
     at: usize,
     terms: BTreeSet<usize>,
@@ -88,25 +88,25 @@ impl Finder<'_> {
     /// Adds the removal of rules and of parts of rules, which may have no effect.
     fn drops(&self, changes: &mut Vec<Change>) {
         // Of two equal rules, the first is kept.
-        for (place, standing, parts) in self.rules.iter().rev() {
+        for (slot, derived, parts) in self.rules.iter().rev() {
             changes.push(Change {
-                empty: vec![*place],
+                empty: vec![*slot],
                 fill: Vec::new(),
-                saved: rule_size(&standing.rule.rule),
+                saved: rule_size(&derived.rule.rule),
                 has_fewer_inputs: false,
             });
             for part in parts.iter().flatten() {
                 let kept = parts.iter().flatten().filter(|other| *other != part);
-                let kept: Vec<Part> = kept.cloned().collect();
+                let kept: Vec<VariableCondition> = kept.cloned().collect();
                 if kept.is_empty() {
                     continue;
                 }
-                let mut shorter = (*standing).clone();
+                let mut shorter = (*derived).clone();
                 shorter.rule.rule.condition = condition(&kept, &part.variable);
                 changes.push(Change {
-                    empty: vec![*place],
+                    empty: vec![*slot],
                     saved: size(&part.condition),
-                    fill: vec![(*place, shorter)],
+                    fill: vec![(*slot, shorter)],
                     has_fewer_inputs: false,
                 });
             }
@@ -117,13 +117,13 @@ impl Finder<'_> {
     /// support replaces the others.
     fn without_variable(&self, name: &str, changes: &mut Vec<Change>) {
         /// The position and the rule, and its parts without the variable.
-        type Group<'a> = Vec<(usize, &'a Standing, Vec<Part>)>;
+        type Group<'a> = Vec<(usize, &'a DerivedRule, Vec<VariableCondition>)>;
         let mut groups: BTreeMap<String, Group<'_>> = BTreeMap::new();
         let mut names_it = false;
-        for (place, standing, parts) in &self.rules {
+        for (slot, derived, parts) in &self.rules {
             let Some(parts) = parts else {
                 let mut is_named = false;
-                let condition = &standing.rule.rule.condition;
+                let condition = &derived.rule.rule.condition;
                 condition.visit(&mut |proposition| is_named |= proposition.variable.text == name);
                 if is_named {
                     return;
@@ -132,12 +132,9 @@ impl Finder<'_> {
             };
             names_it |= parts.iter().any(|part| part.variable == name);
             let kept = parts.iter().filter(|part| part.variable != name);
-            let kept: Vec<Part> = kept.cloned().collect();
-            let key = format!("{} {}", standing.rule.block, text(&kept));
-            groups
-                .entry(key)
-                .or_default()
-                .push((*place, standing, kept));
+            let kept: Vec<VariableCondition> = kept.cloned().collect();
+            let key = format!("{} {}", derived.rule.block, text(&kept));
+            groups.entry(key).or_default().push((*slot, derived, kept));
         }
         if !names_it {
             return;
@@ -151,19 +148,19 @@ impl Finder<'_> {
         let mut sizes = [0, 0];
         for group in groups.values() {
             let mut support: BTreeMap<String, (u64, usize)> = BTreeMap::new();
-            for (_, standing, _) in group {
-                let entry = support.entry(consequents(standing)).or_default();
-                entry.0 += standing.rule.support.unwrap_or(0);
+            for (_, derived, _) in group {
+                let entry = support.entry(consequents(derived)).or_default();
+                entry.0 += derived.rule.support.unwrap_or(0);
                 entry.1 += 1;
             }
             let most = support.values().max();
             let strongest = group
                 .iter()
-                .find(|(_, standing, _)| support.get(&consequents(standing)) == most);
-            let Some(((_, strongest, kept), (place, ..))) = strongest.zip(group.first()) else {
+                .find(|(_, derived, _)| support.get(&consequents(derived)) == most);
+            let Some(((_, strongest, kept), (slot, ..))) = strongest.zip(group.first()) else {
                 return;
             };
-            let members: Vec<&Standing> = group.iter().map(|(_, standing, _)| *standing).collect();
+            let members: Vec<&DerivedRule> = group.iter().map(|(_, derived, _)| *derived).collect();
             let merged = merged(
                 &members,
                 condition(kept, name),
@@ -175,8 +172,8 @@ impl Finder<'_> {
                 .map(|s| rule_size(&s.rule.rule))
                 .sum::<usize>();
             sizes[1] += rule_size(&merged.rule.rule);
-            change.empty.extend(group.iter().map(|(place, ..)| *place));
-            change.fill.push((*place, merged));
+            change.empty.extend(group.iter().map(|(slot, ..)| *slot));
+            change.fill.push((*slot, merged));
         }
         change.saved = sizes[0].saturating_sub(sizes[1]);
         changes.push(change);
@@ -190,7 +187,7 @@ impl Finder<'_> {
         let all: BTreeSet<usize> = (0..variable.terms.len()).collect();
         // Grouped by their conditions on the other variables.
         let mut groups: BTreeMap<String, Vec<Member<'_>>> = BTreeMap::new();
-        for (place, standing, parts) in &self.rules {
+        for (slot, derived, parts) in &self.rules {
             let Some(parts) = parts else { continue };
             let at = parts.iter().position(|part| part.variable == name);
             let own = at.and_then(|at| parts.get(at));
@@ -198,14 +195,14 @@ impl Finder<'_> {
                 continue;
             };
             let others = parts.iter().filter(|part| part.variable != name);
-            let others: Vec<Part> = others.cloned().collect();
-            let mut key = format!("{} {}", standing.rule.block, text(&others));
+            let others: Vec<VariableCondition> = others.cloned().collect();
+            let mut key = format!("{} {}", derived.rule.block, text(&others));
             if !loose {
-                key += &consequents(standing);
+                key += &consequents(derived);
             }
             groups.entry(key).or_default().push(Member {
-                place: *place,
-                standing,
+                slot: *slot,
+                derived,
                 at: at.unwrap_or(others.len()),
                 others,
                 terms,
@@ -227,23 +224,23 @@ fn merge(members: &[&Member<'_>], variable: &Variable, changes: &mut Vec<Change>
         .flat_map(|member| member.terms.iter().copied());
     let terms: BTreeSet<usize> = terms.collect();
     let mut members = members.to_vec();
-    members.sort_by_key(|member| member.place);
+    members.sort_by_key(|member| member.slot);
     let Some(first) = members.first() else {
         return;
     };
-    let standing: Vec<&Standing> = members.iter().map(|member| member.standing).collect();
+    let derived: Vec<&DerivedRule> = members.iter().map(|member| member.derived).collect();
     let mut consequents: Vec<&Vec<Consequent>> = Vec::new();
-    for standing in &standing {
-        let own = &standing.rule.rule.consequents;
+    for derived in &derived {
+        let own = &derived.rule.rule.consequents;
         if !consequents.contains(&own) {
             consequents.push(own);
         }
     }
-    let before: usize = standing.iter().map(|s| rule_size(&s.rule.rule)).sum();
+    let before: usize = derived.iter().map(|s| rule_size(&s.rule.rule)).sum();
     for way in one_of(variable, &terms) {
         let mut parts = first.others.clone();
         if let Some(condition) = way {
-            let part = Part {
+            let part = VariableCondition {
                 variable: variable.name.clone(),
                 condition,
                 terms: Some(terms.clone()),
@@ -252,12 +249,12 @@ fn merge(members: &[&Member<'_>], variable: &Variable, changes: &mut Vec<Change>
         }
         let condition = condition(&parts, &variable.name);
         for consequents in &consequents {
-            for weight in weights(&standing) {
-                let merged = merged(&standing, condition.clone(), consequents, weight);
+            for weight in weights(&derived) {
+                let merged = merged(&derived, condition.clone(), consequents, weight);
                 changes.push(Change {
-                    empty: members.iter().map(|member| member.place).collect(),
+                    empty: members.iter().map(|member| member.slot).collect(),
                     saved: before.saturating_sub(rule_size(&merged.rule.rule)),
-                    fill: vec![(first.place, merged)],
+                    fill: vec![(first.slot, merged)],
                     has_fewer_inputs: false,
                 });
             }
@@ -266,12 +263,12 @@ fn merge(members: &[&Member<'_>], variable: &Variable, changes: &mut Vec<Change>
 }
 
 /// The candidate weights of a merged rule.
-fn weights(standing: &[&Standing]) -> Vec<f64> {
-    let weights = || standing.iter().map(|standing| standing.rule.rule.weight);
+fn weights(derived: &[&DerivedRule]) -> Vec<f64> {
+    let weights = || derived.iter().map(|derived| derived.rule.rule.weight);
     let largest = weights().fold(0.0, f64::max);
     let sum: f64 = weights().sum();
     let mut found = vec![largest];
-    let mean = sum / standing.len() as f64;
+    let mean = sum / derived.len() as f64;
     found.extend(
         [mean, sum]
             .into_iter()
@@ -282,18 +279,18 @@ fn weights(standing: &[&Standing]) -> Vec<f64> {
 
 /// Merges several rules into one. Their support is added; their notes are joined.
 fn merged(
-    standing: &[&Standing],
+    derived: &[&DerivedRule],
     condition: rule::Condition,
     consequents: &[Consequent],
     weight: f64,
-) -> Standing {
-    let mut of: Vec<usize> = standing
+) -> DerivedRule {
+    let mut of: Vec<usize> = derived
         .iter()
-        .flat_map(|standing| standing.of.clone())
+        .flat_map(|derived| derived.of.clone())
         .collect();
     of.sort_unstable();
-    let rules = || standing.iter().map(|standing| &standing.rule);
-    let one = match standing {
+    let rules = || derived.iter().map(|derived| &derived.rule);
+    let one = match derived {
         [one] => Some(&one.rule),
         _ => None,
     };
@@ -305,7 +302,7 @@ fn merged(
     }
     let of_some = rules().any(|rule| rule.note.is_none());
     let note = if of_some { "in part: " } else { "" }.to_owned() + &notes.join("; ");
-    Standing {
+    DerivedRule {
         rule: Rule {
             rule: rule::Rule {
                 condition,
@@ -325,7 +322,7 @@ fn merged(
 }
 
 /// The text of parts, in an order that is independent of the author's.
-fn text(parts: &[Part]) -> String {
+fn text(parts: &[VariableCondition]) -> String {
     let mut texts: Vec<String> = parts
         .iter()
         .map(|part| part.condition.to_string())
@@ -334,8 +331,8 @@ fn text(parts: &[Part]) -> String {
     texts.join(" AND ")
 }
 
-fn consequents(standing: &Standing) -> String {
-    let texts = standing
+fn consequents(derived: &DerivedRule) -> String {
+    let texts = derived
         .rule
         .rule
         .consequents

@@ -5,8 +5,8 @@
 
 mod antecedent;
 mod change;
-mod judge;
 mod points;
+mod reference;
 #[cfg(test)]
 mod tests;
 
@@ -16,8 +16,8 @@ use fuzzy::{
     Engine, Model, diagnostic::Findings, engine::EvaluateError, model::Disjunction, rule::Condition,
 };
 
-use change::{Change, Places, Standing, changes, rule_size};
-use judge::Judge;
+use change::{Change, DerivedRule, RuleSlots, changes, rule_size};
+use reference::ReferenceOutputs;
 
 /// Values that differ by at most this share of the output's range are equal.
 pub const EQUAL: f64 = 1e-12;
@@ -39,7 +39,7 @@ pub struct SimplifySettings {
 
 /// A simplified model.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Simplified {
+pub struct SimplifyResult {
     /// The model.
     pub model: Model,
     /// For each rule of the simplified model, the indices of the original rules that it replaces.
@@ -141,7 +141,7 @@ pub fn simplify(
     model: &Model,
     rows: &[Vec<f64>],
     settings: &SimplifySettings,
-) -> Result<Simplified, SimplifyError> {
+) -> Result<SimplifyResult, SimplifyError> {
     if let Some(tolerance) = settings.tolerance
         && !(tolerance >= 0.0 && tolerance.is_finite())
     {
@@ -172,57 +172,57 @@ pub fn simplify(
     for (column, rows) in columns.iter_mut().zip(rows) {
         column.extend(rows);
     }
-    let mut judge = Judge::new(model, columns, settings.tolerance)?;
+    let mut reference = ReferenceOutputs::new(model, columns, settings.tolerance)?;
     let may_differ = settings.tolerance.is_some();
     let mut short = model.clone();
     let rules = model.rules.iter().cloned().enumerate();
-    let standing = |(index, rule)| {
-        Some(Standing {
+    let derived = |(index, rule)| {
+        Some(DerivedRule {
             rule,
             of: vec![index],
         })
     };
-    let mut places: Places = rules.map(standing).collect();
+    let mut slots: RuleSlots = rules.map(derived).collect();
     // After a reduction, another disjunction may reduce the rules further.
     loop {
-        let before = total_size(&places);
-        let mut best = (before, short.operators.or, places.clone());
+        let before = total_size(&slots);
+        let mut best = (before, short.operators.or, slots.clone());
         for or in disjunctions(&short) {
             let mut base = short.clone();
             base.operators.or = or;
-            let mut places = places.clone();
-            without_difference(&base, &mut judge, &mut places);
+            let mut slots = slots.clone();
+            without_difference(&base, &mut reference, &mut slots);
             if may_differ {
-                within_tolerance(&base, &mut judge, &mut places);
+                within_tolerance(&base, &mut reference, &mut slots);
             }
-            let size = total_size(&places);
+            let size = total_size(&slots);
             if size < best.0 {
-                best = (size, or, places);
+                best = (size, or, slots);
             }
         }
-        places = best.2;
-        short = with_rules(&short, &places);
+        slots = best.2;
+        short = with_rules(&short, &slots);
         let has_or = short.rules.iter().any(|rule| has_or(&rule.rule.condition));
         short.operators.or = if has_or { best.1 } else { model.operators.or };
         if best.0 == before {
             break;
         }
     }
-    let inputs = drop_inputs(&mut short, &mut judge);
-    let rules: Vec<Vec<usize>> = places
+    let inputs = drop_inputs(&mut short, &mut reference);
+    let rules: Vec<Vec<usize>> = slots
         .into_iter()
         .flatten()
-        .map(|standing| standing.of)
+        .map(|derived| derived.of)
         .collect();
     let kept: BTreeSet<usize> = rules.iter().flatten().copied().collect();
-    Ok(Simplified {
+    Ok(SimplifyResult {
         dropped: (0..model.rules.len())
             .filter(|rule| !kept.contains(rule))
             .collect(),
         rules,
         inputs,
-        points: judge.len(),
-        difference: judge.examine(&short).flatten(),
+        points: reference.len(),
+        difference: reference.examine(&short).flatten(),
         model: short,
     })
 }
@@ -248,27 +248,27 @@ fn has_or(condition: &Condition) -> bool {
 }
 
 /// The number of propositions in all rules.
-fn total_size(places: &Places) -> usize {
-    let rules = places.iter().flatten();
-    rules.map(|standing| rule_size(&standing.rule.rule)).sum()
+fn total_size(slots: &RuleSlots) -> usize {
+    let rules = slots.iter().flatten();
+    rules.map(|derived| rule_size(&derived.rule.rule)).sum()
 }
 
 /// Applies the changes that do not change any output, largest reduction first.
-fn without_difference(model: &Model, judge: &mut Judge, places: &mut Places) {
+fn without_difference(model: &Model, reference: &mut ReferenceOutputs, slots: &mut RuleSlots) {
     // A change that failed would fail again, because the changes applied meanwhile do not affect the outputs. Before
     // the loop ends, all failed changes are tried once more.
     let mut failed: HashSet<String> = HashSet::new();
     loop {
         let is_complete = failed.is_empty();
         let mut changed: BTreeSet<usize> = BTreeSet::new();
-        for change in changes(model, places, false) {
-            let key = key(&change, places);
-            if change.empty.iter().any(|place| changed.contains(place)) || failed.contains(&key) {
+        for change in changes(model, slots, false) {
+            let key = key(&change, slots);
+            if change.empty.iter().any(|slot| changed.contains(slot)) || failed.contains(&key) {
                 continue;
             }
-            let candidate = applied(&change, places);
-            if judge.is_equal(&with_rules(model, &candidate)) {
-                *places = candidate;
+            let candidate = applied(&change, slots);
+            if reference.is_equal(&with_rules(model, &candidate)) {
+                *slots = candidate;
                 changed.extend(change.empty);
             } else {
                 failed.insert(key);
@@ -284,41 +284,41 @@ fn without_difference(model: &Model, judge: &mut Judge, places: &mut Places) {
 
 /// Applies changes that reduce rules or inputs as long as one stays within the tolerance; each time, the one with the
 /// smallest difference for its reduction.
-fn within_tolerance(model: &Model, judge: &mut Judge, places: &mut Places) {
+fn within_tolerance(model: &Model, reference: &mut ReferenceOutputs, slots: &mut RuleSlots) {
     let mut failed: HashSet<String> = HashSet::new();
     loop {
         let mut promising = Vec::new();
-        for change in changes(model, places, true) {
+        for change in changes(model, slots, true) {
             if !change.has_fewer_inputs && change.fill.len() == change.empty.len() {
                 continue;
             }
-            let key = key(&change, places);
+            let key = key(&change, slots);
             if failed.contains(&key) {
                 continue;
             }
-            let candidate = applied(&change, places);
-            match judge.glance(&with_rules(model, &candidate)) {
+            let candidate = applied(&change, slots);
+            match reference.glance(&with_rules(model, &candidate)) {
                 Some(share) => promising.push((share / change.saved as f64, key, candidate)),
                 None => drop(failed.insert(key)),
             }
         }
         promising.sort_by(|a, b| a.0.total_cmp(&b.0));
         let found = promising.into_iter().find(|(_, key, candidate)| {
-            let holds = judge.examine(&with_rules(model, candidate)).is_some();
+            let holds = reference.examine(&with_rules(model, candidate)).is_some();
             if !holds {
                 failed.insert(key.clone());
             }
             holds
         });
         match found {
-            Some((.., candidate)) => *places = candidate,
+            Some((.., candidate)) => *slots = candidate,
             None => return,
         }
     }
 }
 
 /// Removes the inputs that no rule names.
-fn drop_inputs(model: &mut Model, judge: &mut Judge) -> Vec<String> {
+fn drop_inputs(model: &mut Model, reference: &mut ReferenceOutputs) -> Vec<String> {
     let mut named = BTreeSet::new();
     for rule in &model.rules {
         rule.rule.condition.visit(&mut |proposition| {
@@ -333,7 +333,7 @@ fn drop_inputs(model: &mut Model, judge: &mut Judge) -> Vec<String> {
         // A formula may still read the input.
         let mut without = model.clone();
         without.inputs.retain(|other| other.name != input.name);
-        if judge.examine(&without).is_some() {
+        if reference.examine(&without).is_some() {
             *model = without;
             dropped.push(input.name);
         }
@@ -341,39 +341,39 @@ fn drop_inputs(model: &mut Model, judge: &mut Judge) -> Vec<String> {
     dropped
 }
 
-fn applied(change: &Change, places: &Places) -> Places {
-    let mut places = places.clone();
-    for place in &change.empty {
-        if let Some(place) = places.get_mut(*place) {
-            *place = None;
+fn applied(change: &Change, slots: &RuleSlots) -> RuleSlots {
+    let mut slots = slots.clone();
+    for slot in &change.empty {
+        if let Some(slot) = slots.get_mut(*slot) {
+            *slot = None;
         }
     }
-    for (place, standing) in &change.fill {
-        if let Some(place) = places.get_mut(*place) {
-            *place = Some(standing.clone());
+    for (slot, derived) in &change.fill {
+        if let Some(slot) = slots.get_mut(*slot) {
+            *slot = Some(derived.clone());
         }
     }
-    places
+    slots
 }
 
-fn with_rules(model: &Model, places: &Places) -> Model {
-    let rules = places.iter().flatten();
+fn with_rules(model: &Model, slots: &RuleSlots) -> Model {
+    let rules = slots.iter().flatten();
     Model {
-        rules: rules.map(|standing| standing.rule.clone()).collect(),
+        rules: rules.map(|derived| derived.rule.clone()).collect(),
         ..model.clone()
     }
 }
 
 /// A key for the rules that a change removes and adds.
-fn key(change: &Change, places: &Places) -> String {
+fn key(change: &Change, slots: &RuleSlots) -> String {
     let taken = change
         .empty
         .iter()
-        .filter_map(|place| places.get(*place)?.as_ref());
-    let given = change.fill.iter().map(|(_, standing)| standing);
-    let texts = |rules: &mut dyn Iterator<Item = &Standing>| {
+        .filter_map(|slot| slots.get(*slot)?.as_ref());
+    let given = change.fill.iter().map(|(_, derived)| derived);
+    let texts = |rules: &mut dyn Iterator<Item = &DerivedRule>| {
         rules
-            .map(|standing| standing.rule.rule.to_string() + "\n")
+            .map(|derived| derived.rule.rule.to_string() + "\n")
             .collect::<String>()
     };
     texts(&mut taken.into_iter()) + "->\n" + &texts(&mut given.into_iter())

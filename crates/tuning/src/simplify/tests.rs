@@ -6,11 +6,11 @@ fn parse(text: &str) -> Model {
     fuzzy::yaml::parse(text).unwrap().model
 }
 
-fn simplified(model: &Model) -> Simplified {
+fn simplified(model: &Model) -> SimplifyResult {
     simplify(model, &[], &SimplifySettings::default()).unwrap()
 }
 
-fn within(model: &Model, tolerance: f64) -> Simplified {
+fn within(model: &Model, tolerance: f64) -> SimplifyResult {
     let settings = SimplifySettings {
         tolerance: Some(tolerance),
         ..SimplifySettings::default()

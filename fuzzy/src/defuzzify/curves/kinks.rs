@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use super::super::calculus::{Kinks, levels};
 use super::super::maxima::{INSIDE, turns};
-use super::{Curves, Joint, Part, Run, Strengths, Workspace};
+use super::{ActivatedTerm, ConsequentOperators, Curves, Run, Strengths, Workspace};
 use crate::model::{Aggregation, Implication};
 use crate::table::{LEAST_STRENGTH, numeric::root};
 
@@ -26,7 +26,7 @@ impl Curves {
     pub(super) fn kinks(
         &self,
         strengths: Strengths<'_>,
-        joint: Joint,
+        operators: ConsequentOperators,
         (from, to): (f64, f64),
         workspace: &mut Workspace,
     ) -> bool {
@@ -48,19 +48,19 @@ impl Curves {
         };
         cuts.each_stretch(|cuts, _| {
             if steps.take(2 * strengths.strengths.len()) {
-                self.levels(strengths, joint.implication, runs, cuts);
+                self.levels(strengths, operators.implication, runs, cuts);
             }
         });
         let all_known = !cuts.is_full && !self.has_formula;
         // Each activated term is smooth between the levels.
-        let kinks = Kinks::of(joint.aggregation);
+        let kinks = Kinks::of(operators.aggregation);
         cuts.each_stretch(|cuts, stretch| {
             if kinks == Kinks::None || !steps.take(strengths.strengths.len()) {
                 return;
             }
             self.parts(
                 strengths,
-                joint.implication,
+                operators.implication,
                 stretch,
                 all_known,
                 (runs, parts),
@@ -100,10 +100,10 @@ impl Curves {
     }
 
     /// Adds the kinks and steps of the aggregation.
-    fn crossings(&self, parts: &[Part], kinks: Kinks, cuts: &mut Cuts<'_>) {
-        let degree = |part: &Part, x: f64| self.joined(&[*part], Aggregation::Maximum, x);
-        let is_line = |part: &Part| part.line.is_some();
-        let sum = |parts: &[Part], x: f64| self.joined(parts, Aggregation::Sum, x);
+    fn crossings(&self, parts: &[ActivatedTerm], kinks: Kinks, cuts: &mut Cuts<'_>) {
+        let degree = |part: &ActivatedTerm, x: f64| self.joined(&[*part], Aggregation::Maximum, x);
+        let is_line = |part: &ActivatedTerm| part.line.is_some();
+        let sum = |parts: &[ActivatedTerm], x: f64| self.joined(parts, Aggregation::Sum, x);
         for (i, first) in parts.iter().enumerate() {
             for second in parts.iter().skip(i + 1) {
                 if let Kinks::Crossings | Kinks::CrossingsAndSteps = kinks {

@@ -4,10 +4,10 @@ use alloc::{vec, vec::Vec};
 
 use super::{degree, stretches::LEVEL};
 use crate::table::numeric::root;
-use crate::table::{Flank, Kind};
+use crate::table::{Flank, ShapeKind};
 
 /// Two flanks on the interval that both cover.
-pub(super) struct Couple<'f> {
+pub(super) struct FlankPair<'f> {
     a: &'f Flank,
     b: &'f Flank,
     pub(super) from: f64,
@@ -17,9 +17,9 @@ pub(super) struct Couple<'f> {
 /// The number of points at which two flanks with the same direction are compared, in addition to their cuts.
 const COMPARED: usize = 24;
 
-impl<'f> Couple<'f> {
+impl<'f> FlankPair<'f> {
     pub(super) fn new(a: &'f Flank, b: &'f Flank) -> Self {
-        Couple {
+        FlankPair {
             a,
             b,
             from: a.from.max(b.from),
@@ -35,7 +35,7 @@ impl<'f> Couple<'f> {
             () => -1,
         };
         let alike = direction(self.a) * direction(self.b) > 0;
-        let is_straight = |flank: &Flank| flank.kind == Kind::PIECEWISE;
+        let is_straight = |flank: &Flank| flank.kind == ShapeKind::PIECEWISE;
         let points = if alike && !(is_straight(self.a) && is_straight(self.b)) {
             self.points(seeds)
         } else {

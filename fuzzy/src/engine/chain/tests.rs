@@ -335,22 +335,24 @@ fn the_rule_that_raises_an_output_is_found_through_the_outputs_it_reads() {
     let engine = engine(FAN);
     let mut scratch = engine.scratch();
     let fan = engine.evaluate(&[3.0]).unwrap()[0].value().unwrap();
-    let said = engine.propositions();
-    let of_place = |place: usize| {
-        let mut all = said.iter().filter(|said| said.place == place);
+    let propositions = engine.propositions();
+    let of_index = |index: usize| {
+        let mut all = propositions
+            .iter()
+            .filter(|proposition| proposition.evaluation_index == index);
         all.next().unwrap()
     };
     // Rules 3 and 4 belong to the first stage, so they are evaluated first.
-    let place = engine.raised_by(&mut scratch, &[3.0], 0, fan).unwrap();
-    let why = of_place(place);
+    let index = engine.raised_by(&mut scratch, &[3.0], 0, fan).unwrap();
+    let why = of_index(index);
     assert_eq!(
-        (place, why.rule, why.input, &*why.term),
+        (index, why.rule, why.input, &*why.term),
         (3, 1, 2, "NOT good")
     );
     // The rule for low heat is stronger, but it concludes that the comfort is good.
-    let place = engine.concluded_by(&mut scratch, &[3.0], why).unwrap();
-    let why = of_place(place);
-    assert_eq!((place, why.rule, why.input, &*why.term), (1, 3, 0, "high"));
+    let index = engine.concluded_by(&mut scratch, &[3.0], why).unwrap();
+    let why = of_index(index);
+    assert_eq!((index, why.rule, why.input, &*why.term), (1, 3, 0, "high"));
     assert_eq!(engine.concluded_by(&mut scratch, &[3.0], why), None);
     assert_eq!(engine.raised_by(&mut scratch, &[f64::NAN], 0, fan), None);
 }
@@ -372,12 +374,12 @@ fn of_arrays(engine: &Engine, inputs: &[f64]) -> Option<Vec<Outcome>> {
     let mut scratch = table::Scratch {
         values: &mut vec![0.0; most],
         degrees: &mut vec![0.0; sizes.degrees as usize],
-        alive: &mut vec![table::Partial::NONE; sizes.alive as usize],
-        partial: &mut vec![table::Partial::NONE; sizes.partial as usize],
-        next: &mut vec![table::Partial::NONE; sizes.partial as usize],
+        alive: &mut vec![table::PartialConjunction::NONE; sizes.alive as usize],
+        partial: &mut vec![table::PartialConjunction::NONE; sizes.partial as usize],
+        next: &mut vec![table::PartialConjunction::NONE; sizes.partial as usize],
         stack: &mut vec![0.0; sizes.stack as usize],
         strengths: &mut vec![0.0; sizes.strengths as usize],
-        strongest: &mut vec![table::Strongest::NONE; outputs],
+        strongest: &mut vec![table::StrongestRule::NONE; outputs],
     };
     let mut outcomes = vec![Outcome::UNDEFINED; outputs];
     let mut values = table::Values {

@@ -3,17 +3,19 @@
 use alloc::{vec, vec::Vec};
 
 use super::super::compile::Compiler;
-use super::super::rules::{Draft, Firing};
+use super::super::rules::{FiringOperators, IndexedRule};
 use super::degrees::RangedLiteral;
 use super::formula::{self, Span};
 use super::{Interval, OutputBounds};
-use crate::defuzzify::{Enclosing, Joint, Strengths, Weighted, workspace::Workspace};
+use crate::defuzzify::{
+    ConsequentOperators, EnclosureMethod, Strengths, WeightedNumber, workspace::Workspace,
+};
 use crate::model::{
     Activation, Conjunction, Defuzzifier, Disjunction, MembershipFunction, Model, NoRuleFires,
     Output, chain,
 };
 use crate::table::operators::{larger, smaller};
-use crate::table::{Op, Step};
+use crate::table::{AntecedentStep, Op};
 
 /// The relative width of the band around the least firing strength in which a rule may fire or not, because of
 /// rounding.
@@ -38,7 +40,7 @@ pub(super) struct RangedStage {
 /// A rule, or the part of a rule whose consequents have the same hedges.
 #[derive(Debug, Clone)]
 struct RangedRule {
-    draft: Draft,
+    draft: IndexedRule,
     and: Conjunction,
     or: Disjunction,
     activation: Activation,
@@ -46,7 +48,7 @@ struct RangedRule {
 
 #[derive(Debug, Clone)]
 struct RangedOutput {
-    enclosing: Enclosing,
+    enclosing: EnclosureMethod,
     /// The first firing strength, and the offset of each term from it.
     first: usize,
     offsets: Vec<usize>,
@@ -68,7 +70,7 @@ pub(super) struct RangedScratch {
     of_rules: Vec<(f64, f64)>,
     lower: Vec<f64>,
     upper: Vec<f64>,
-    points: Vec<Weighted>,
+    points: Vec<WeightedNumber>,
     workspace: Workspace,
 }
 
@@ -102,8 +104,8 @@ impl RangedStage {
             let term = term.and_then(|term| model.inputs.get(*input)?.terms.get(term));
             RangedLiteral::new(*input, term.cloned(), hedges.clone())
         });
-        let firing = Firing::of(model);
-        let rule = |draft: Draft| {
+        let firing = FiringOperators::of(model);
+        let rule = |draft: IndexedRule| {
             let block = firing
                 .blocks
                 .iter()
@@ -280,7 +282,7 @@ impl RangedRule {
     /// Returns the bounds of the firing strength of the rule.
     fn strength(&self, degrees: &[(f64, f64)], stack: &mut Vec<(f64, f64)>) -> (f64, f64) {
         stack.clear();
-        for Step { op, literal } in &self.draft.steps {
+        for AntecedentStep { op, literal } in &self.draft.steps {
             let degree = degrees.get(*literal as usize).copied();
             let degree = degree.unwrap_or((0.0, 1.0));
             let and = |a: (f64, f64), b: (f64, f64)| (self.and.of(a.0, b.0), self.and.of(a.1, b.1));
@@ -311,14 +313,14 @@ impl RangedRule {
 impl RangedOutput {
     fn new(model: &Model, output: &Output, first: usize, offsets: Vec<usize>) -> Self {
         let operators = model.operators_of_output(output);
-        let joint = Joint {
+        let joint = ConsequentOperators {
             implication: operators.implication,
             aggregation: operators.aggregation,
         };
         let numbers = output.variable.terms.iter();
         let numbers = numbers.filter(|_| output.defuzzifier.takes_numbers());
         RangedOutput {
-            enclosing: Enclosing::new(output, joint),
+            enclosing: EnclosureMethod::new(output, joint),
             first,
             offsets,
             numbers: numbers

@@ -11,16 +11,16 @@ use alloc::vec::Vec;
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, f64x4};
 
-use super::{And, Cuts, Lines, fires, four, splat};
+use super::{Cuts, Lines, VectorConjunction, fires, four, splat};
 use crate::table::operators::{larger, smaller};
-use crate::table::results::{Given, number_of};
+use crate::table::results::{InputFlags, number_of};
 use crate::table::{ClosedForm, Outcome, Output, Results};
 
 /// A compiled rule set.
 #[derive(Debug, Clone)]
 pub(in super::super) struct Plane {
     pub(super) level: Level,
-    pub(super) sides: [Side; 2],
+    pub(super) sides: [PlaneInput; 2],
     /// The number of intervals of the second input.
     pub(super) columns: usize,
     /// The regions, row by row: those of the first interval of the first input, then those of its second interval, and
@@ -28,7 +28,7 @@ pub(in super::super) struct Plane {
     pub(super) regions: Vec<Region>,
     /// The least firing strength: smaller ones count as 0.
     pub(super) least: f64,
-    pub(super) and: And,
+    pub(super) and: VectorConjunction,
     pub(super) output: Output,
     /// The closed form, which reduces the firing strengths to a value.
     pub(super) form: ClosedForm,
@@ -36,7 +36,7 @@ pub(in super::super) struct Plane {
 
 /// An input.
 #[derive(Debug, Clone)]
-pub(super) struct Side {
+pub(super) struct PlaneInput {
     pub(super) low: f64,
     pub(super) high: f64,
     pub(super) cuts: Cuts,
@@ -73,7 +73,7 @@ impl Plane {
     fn evaluate_by<S: Simd>(&self, simd: S, inputs: &[f64; 2], outcome: &mut Outcome) {
         let [first, second] = &self.sides;
         // NaN is replaced by the upper end.
-        let near = |x: f64, side: &Side| larger(smaller(x, side.high), side.low);
+        let near = |x: f64, side: &PlaneInput| larger(smaller(x, side.high), side.low);
         let (x, y) = (near(inputs[0], first), near(inputs[1], second));
         let clamped = (x != inputs[0]) | (y != inputs[1]);
         // Values that are not finite are outside the range, which is rare.
@@ -96,7 +96,7 @@ impl Plane {
             values: [self.value(simd, region, strengths, [x, y])],
             coverage: [coverage],
             rules: [number_of(rule)],
-            given: Given {
+            input_flags: InputFlags {
                 clamped: [u64::from(clamped)],
                 infinite: [u64::from(infinite)],
             },

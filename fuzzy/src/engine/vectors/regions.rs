@@ -5,8 +5,8 @@ use core::array::from_fn;
 
 use fearless_simd::Level;
 
-use super::plane::{Plane, Region, Side};
-use super::{And, Cuts, Lines, lines};
+use super::plane::{Plane, PlaneInput, Region};
+use super::{Cuts, Lines, VectorConjunction, lines};
 use crate::engine::arrays::OwnedTable;
 use crate::table::{
     Action, Arrays as _, Axis, ClosedForm, Coefficient, Conjunctions, Consequent, Line, Moment,
@@ -75,7 +75,7 @@ impl Plane {
             columns,
             regions,
             least: table.least_strength(),
-            and: And::of(table)?,
+            and: VectorConjunction::of(table)?,
             output: *output,
             form,
         })
@@ -83,9 +83,9 @@ impl Plane {
 }
 
 /// Returns an input of the table; `None` if it has too many cuts.
-fn side(table: &OwnedTable, axis: &Axis) -> Option<Side> {
+fn side(table: &OwnedTable, axis: &Axis) -> Option<PlaneInput> {
     let input = table.inputs.get(axis.input as usize)?;
-    Some(Side {
+    Some(PlaneInput {
         low: input.low,
         high: input.high,
         cuts: Cuts::new(table, axis)?,

@@ -5,12 +5,12 @@ use alloc::vec::Vec;
 
 use proptest::prelude::*;
 
-use crate::engine::strategy::Single;
+use crate::engine::strategy::SingleRowMethod;
 use crate::engine::{Engine, Outcome};
 use crate::model::{Aggregation, Conjunction, Defuzzifier, Implication, MembershipFunction};
 use crate::model::{Model, Output, Variable};
 use crate::rule::{Condition, Rule};
-use crate::table::{Partial, Scratch, Strongest};
+use crate::table::{PartialConjunction, Scratch, StrongestRule};
 
 const TERMS: [&str; 4] = ["a", "b", "c", "d"];
 
@@ -79,9 +79,9 @@ proptest! {
         let engine = Engine::new(&model(inputs, kind, multiplies, &weights, seed)).unwrap();
         let by_vectors = &engine.first.single;
         let expected = match inputs {
-            2 => matches!(by_vectors, Single::Plane(_)),
-            _ if kind == 2 || kind == 3 => matches!(by_vectors, Single::Cells | Single::Rules),
-            _ => matches!(by_vectors, Single::Vectors(_)),
+            2 => matches!(by_vectors, SingleRowMethod::Plane(_)),
+            _ if kind == 2 || kind == 3 => matches!(by_vectors, SingleRowMethod::Cells | SingleRowMethod::Rules),
+            _ => matches!(by_vectors, SingleRowMethod::Vectors(_)),
         };
         prop_assert!(expected, "{inputs} inputs, kind {kind}");
         let (table, mut own) = (engine.table().unwrap(), engine.scratch());
@@ -89,12 +89,12 @@ proptest! {
         let mut scratch = Scratch {
             values: &mut [0.0; 4],
             degrees: &mut alloc::vec![0.0; sizes.degrees as usize],
-            alive: &mut alloc::vec![Partial::NONE; sizes.alive as usize],
-            partial: &mut alloc::vec![Partial::NONE; sizes.partial as usize],
-            next: &mut alloc::vec![Partial::NONE; sizes.partial as usize],
+            alive: &mut alloc::vec![PartialConjunction::NONE; sizes.alive as usize],
+            partial: &mut alloc::vec![PartialConjunction::NONE; sizes.partial as usize],
+            next: &mut alloc::vec![PartialConjunction::NONE; sizes.partial as usize],
             stack: &mut alloc::vec![0.0; sizes.stack as usize],
             strengths: &mut alloc::vec![0.0; sizes.strengths as usize],
-            strongest: &mut [Strongest::NONE],
+            strongest: &mut [StrongestRule::NONE],
         };
         for point in &points {
             let point = &point[..inputs];

@@ -5,10 +5,10 @@ use alloc::vec::Vec;
 use fearless_simd::Level;
 use fearless_simd::prelude::*;
 
-use super::{And, Cuts, Lines, fires, four, lines, splat};
+use super::{Cuts, Lines, VectorConjunction, fires, four, lines, splat};
 use crate::engine::arrays::OwnedTable;
 use crate::table::operators::larger;
-use crate::table::{Arrays as _, Conjunctions, Line, Strongest, has_cells_alone};
+use crate::table::{Arrays as _, Conjunctions, Line, StrongestRule, has_cells_alone};
 
 /// A uniform table with one action per cell and one output.
 #[derive(Debug, Clone)]
@@ -16,7 +16,7 @@ pub(in super::super) struct Uniform {
     level: Level,
     axes: Vec<Axis>,
     cells: Vec<Cell>,
-    and: And,
+    and: VectorConjunction,
     /// The least firing strength: smaller ones count as 0.
     least: f64,
 }
@@ -81,7 +81,7 @@ impl Uniform {
                     rule: action.rule,
                 })
                 .collect(),
-            and: And::of(table)?,
+            and: VectorConjunction::of(table)?,
             least: table.least_strength(),
         })
     }
@@ -92,7 +92,7 @@ impl Uniform {
         &self,
         values: &[[f64; 1]],
         strengths: &mut [[f64; 1]],
-    ) -> Strongest {
+    ) -> StrongestRule {
         let strongest = fearless_simd::dispatch!(self.level, simd => match &*self.axes {
             [a, b, c] => self.fire_by(simd, ([a, b], [c]), values, strengths),
             [a, b, c, d] => self.fire_by(simd, ([a, b], [c, d]), values, strengths),
@@ -101,7 +101,7 @@ impl Uniform {
         strongest.unwrap_or_else(|| {
             // Unreachable: there is a line for each interval, and a cell for each combination of lines.
             strengths.fill([0.0]);
-            Strongest::NONE
+            StrongestRule::NONE
         })
     }
 
@@ -112,7 +112,7 @@ impl Uniform {
         ([first, second], more): ([&Axis; 2], [&Axis; MORE]),
         values: &[[f64; 1]],
         strengths: &mut [[f64; 1]],
-    ) -> Option<Strongest> {
+    ) -> Option<StrongestRule> {
         let at = |axis: &Axis| values.get(axis.input).map(|[x]| *x);
         let at = [at(first)?, at(second)?];
         let [x, y] = at;
@@ -170,7 +170,7 @@ impl Uniform {
             rule = rule.min(self.cells.get(cell as usize)?.rule);
             strongest &= strongest - 1;
         }
-        Some(Strongest::of(coverage, rule))
+        Some(StrongestRule::of(coverage, rule))
     }
 }
 

@@ -94,7 +94,7 @@ fn any_variable() -> impl Strategy<Value = Variable> {
                         .zip(sets)
                         .map(|(name, membership_function)| Term {
                             name,
-                            lower: lower.map(|part| Lower {
+                            lower: lower.map(|part| LowerFunction {
                                 membership_function: membership_function.clone(),
                                 height: part * height,
                             }),
@@ -274,7 +274,7 @@ pub(super) fn any_model() -> impl Strategy<Value = Model> {
                         let condition = Condition::is(&input.name, &term(input, i));
                         let rule = rule::Rule::new(condition, &variable.name, &term(&variable, i))
                             .with(weight);
-                        let beaten = Beaten {
+                        let rejected = RejectedConsequent {
                             term: "other".into(),
                             degree: weight,
                             support: 3,
@@ -284,12 +284,12 @@ pub(super) fn any_model() -> impl Strategy<Value = Model> {
                             block: number * count / all,
                             confidence,
                             support: confidence.map(|c| (c * 1e6) as u64),
-                            against: confidence.map(|_| beaten).into_iter().collect(),
+                            against: confidence.map(|_| rejected).into_iter().collect(),
                             note,
                         }
                     },
                 );
-                let step = Step {
+                let step = ProvenanceStep {
                     command: format!("command {name}"),
                     data: Vec::from([DataFile {
                         file: format!("{name}.csv"),
@@ -310,7 +310,7 @@ pub(super) fn any_model() -> impl Strategy<Value = Model> {
                 Model {
                     rules: rules.collect(),
                     allow: match otherwise {
-                        1 => vec![Allowed {
+                        1 => vec![AllowedFinding {
                             finding: "jump".into(),
                             because: "limits: of 'the' regulation".into(),
                         }],

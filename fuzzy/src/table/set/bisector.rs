@@ -1,10 +1,10 @@
 //! The value that halves the area of a prepared set.
 
-use super::{Part, Prepared, Section};
+use super::{Section, SetArrays, SetSegment};
 use crate::table::operators::{larger, smaller};
-use crate::table::{Flank, Kind, Output};
+use crate::table::{Flank, Output, ShapeKind};
 
-impl Prepared<'_> {
+impl SetArrays<'_> {
     pub(super) fn bisector(&self, strengths: &[f64]) -> Option<f64> {
         let area_of = |section: &Section| {
             let mut area = 0.0;
@@ -51,12 +51,12 @@ impl Prepared<'_> {
     }
 
     /// Returns the value up to which a part has a given area.
-    fn where_area_is(&self, part: &Part<'_>, area: f64) -> f64 {
+    fn where_area_is(&self, part: &SetSegment<'_>, area: f64) -> f64 {
         let units = area / part.degree;
         let Some(flank) = part.flank else {
             return smaller(part.to, part.from + units * self.measure.unit);
         };
-        if flank.kind == Kind::PIECEWISE {
+        if flank.kind == ShapeKind::PIECEWISE {
             // Solve units = left d + slope d^2 / 2 for d without cancellation.
             let (left, right) = (flank.degree(part.from), flank.degree(part.to));
             let slope = (right - left) * (self.measure.unit / (part.to - part.from));

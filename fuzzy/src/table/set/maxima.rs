@@ -1,10 +1,10 @@
 //! The values at which a prepared set is highest.
 
-use super::{OfMaxima, Prepared, Section, SetTerm};
+use super::{OfMaxima, Section, SetArrays, SetTerm};
 use crate::table::Flank;
 use crate::table::operators::{larger, smaller};
 
-impl Prepared<'_> {
+impl SetArrays<'_> {
     /// Returns the smallest, the mean or the largest value at which the aggregated maximum is highest.
     pub(super) fn maxima(&self, which: OfMaxima, strengths: &[f64]) -> Option<f64> {
         // The degree of the unscaled term at which it counts as highest. A strength that equals its maximum degree up

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..errors import FlagredError
+from .._errors import FlagredError
 
 __all__ = ["DamagedError", "FleetError"]
 

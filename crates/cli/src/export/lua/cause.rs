@@ -6,7 +6,7 @@ use fuzzy::{
     rule::{Condition, Proposition, Rule},
 };
 
-use super::{number, quoted, template::Filling};
+use super::{number, quoted, template::TemplateValues};
 
 /// The causes of the rules, and the rules that lead to propositions about other outputs.
 #[derive(Default)]
@@ -51,7 +51,7 @@ impl Causes {
     }
 
     /// Fills in the template's parts for the causes.
-    pub(super) fn fill(self, filling: &mut Filling) {
+    pub(super) fn fill(self, filling: &mut TemplateValues) {
         filling.set("motor_cause", self.motor_cause);
         filling.set("leads", !self.leads.is_empty());
         filling.put("leads", self.leads);

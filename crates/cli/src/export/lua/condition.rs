@@ -6,7 +6,7 @@ use fuzzy::{
     rule::{Condition, Hedge, Proposition},
 };
 
-use super::{Unsupported, comment, number};
+use super::{UnsupportedFeature, comment, number};
 
 /// Converts conditions to expressions over the degrees of terms.
 pub(super) struct Expressions<'m> {
@@ -28,7 +28,10 @@ impl<'m> Expressions<'m> {
         }
     }
 
-    pub(super) fn condition(&mut self, condition: &Condition) -> Result<String, Unsupported> {
+    pub(super) fn condition(
+        &mut self,
+        condition: &Condition,
+    ) -> Result<String, UnsupportedFeature> {
         match condition {
             Condition::Is(proposition) => Ok(self.proposition(proposition)),
             Condition::Not(inner) => Ok(format!("(1 - {})", self.condition(inner)?)),
@@ -61,7 +64,7 @@ impl<'m> Expressions<'m> {
         }
     }
 
-    fn conditions(&mut self, parts: &[Condition]) -> Result<Vec<String>, Unsupported> {
+    fn conditions(&mut self, parts: &[Condition]) -> Result<Vec<String>, UnsupportedFeature> {
         parts.iter().map(|part| self.condition(part)).collect()
     }
 
@@ -137,14 +140,14 @@ impl<'m> Expressions<'m> {
     }
 }
 
-fn operator(operator: &str, known: &'static str) -> Unsupported {
+fn operator(operator: &str, known: &'static str) -> UnsupportedFeature {
     let message =
         format!("the script does not support the operator of the rule set for {operator}");
     match known {
         "minimum and product" => {
-            Unsupported::new(message, "it supports `and: minimum` and `and: product`")
+            UnsupportedFeature::new(message, "it supports `and: minimum` and `and: product`")
         }
-        _ => Unsupported::new(
+        _ => UnsupportedFeature::new(
             message,
             "it supports `or: maximum`, `or: probabilistic_sum` and `or: bounded_sum`",
         ),
@@ -155,7 +158,7 @@ fn operator(operator: &str, known: &'static str) -> Unsupported {
 pub(super) fn corners(
     model: &Model,
     (variable, term): (usize, usize),
-) -> Result<(Vec<String>, String), Unsupported> {
+) -> Result<(Vec<String>, String), UnsupportedFeature> {
     let what = match variable < model.inputs.len() {
         true => "input",
         false => "output",
@@ -165,7 +168,7 @@ pub(super) fn corners(
         return Ok(<_>::default());
     };
     let mut corners = term.membership_function.corners().ok_or_else(|| {
-        Unsupported::new(
+        UnsupportedFeature::new(
             format!(
                 "term `{}` of {what} `{}` is curved, which the script does not support",
                 term.name, variable.name

@@ -6,7 +6,9 @@ use flagred::{
     estimator::Estimator,
 };
 
-use super::{Unsupported, comment, limits::Size, number, observed::Script, template::Filling};
+use super::{
+    UnsupportedFeature, comment, limits::Size, number, observed::Script, template::TemplateValues,
+};
 
 /// The signals that a script can read, by their names in logs.
 const SIGNALS: [(&str, &str); 4] = [
@@ -45,9 +47,9 @@ struct Window {
 pub(super) fn fill(
     estimator: &Estimator,
     plan: &Plan<'_>,
-    filling: &mut Filling,
+    filling: &mut TemplateValues,
     size: &mut Size,
-) -> Result<(), Unsupported> {
+) -> Result<(), UnsupportedFeature> {
     let names = estimator.profile().inputs.iter();
     let names: Vec<String> = names.map(|input| comment(&input.name)).collect();
     let signals = signals(&estimator.profile().signals())?;
@@ -204,25 +206,25 @@ fn row(statistic: Statistic, input: usize) -> (&'static str, String) {
 }
 
 /// Refuses statistics that would visit all slots of a window at every call, which takes too long, and statistics that the script lacks.
-fn carried(channel: &Channel, statistic: Statistic) -> Result<(), Unsupported> {
+fn carried(channel: &Channel, statistic: Statistic) -> Result<(), UnsupportedFeature> {
     let what = match statistic {
         Statistic::Rate => "the statistic `rate`",
         Statistic::Percentile(_) => "the statistics `median` and `percentile`",
         _ if channel.exponential => "windows with a `time_constant_s`",
         _ => return Ok(()),
     };
-    Err(Unsupported::new(
+    Err(UnsupportedFeature::new(
         format!("a script on the autopilot cannot compute {what}"),
         "`export --rust` and `export --c` support them",
     ))
 }
 
 /// Returns the expression that reads each signal of a profile.
-fn signals(names: &[&str]) -> Result<Vec<&'static str>, Unsupported> {
+fn signals(names: &[&str]) -> Result<Vec<&'static str>, UnsupportedFeature> {
     let read = |name: &&str| {
         let known = SIGNALS.iter().find(|(known, _)| known == name);
         known.map(|(_, read)| *read).ok_or_else(|| {
-            Unsupported::new(
+            UnsupportedFeature::new(
                 format!("a script on the autopilot cannot read the signal `{name}`"),
                 "it can read battery_v, battery_a, battery_used_mah and battery_remaining_pct, and all signals of the motors",
             )

@@ -1,7 +1,7 @@
 //! Limits of ArduPilot that a large profile would exceed. They are checked before a script is written, so that it does not fail on the
 //! vehicle. The tests check the constant parts of the script against them.
 
-use super::Unsupported;
+use super::UnsupportedFeature;
 
 /// Maximum number of local variables of a function. ArduPilot's Lua allows 100.
 const LOCALS: usize = 90;
@@ -58,12 +58,12 @@ impl Size {
     }
 
     /// Returns an error if a limit is exceeded.
-    pub(super) fn check(&self) -> Result<(), Unsupported> {
+    pub(super) fn check(&self) -> Result<(), UnsupportedFeature> {
         let Size {
             locals, conditions, ..
         } = self;
         let (instructions, bytes) = (self.instructions(), self.bytes());
-        let too_many = |what: String, help| Err(Unsupported::new(what, help));
+        let too_many = |what: String, help| Err(UnsupportedFeature::new(what, help));
         if *locals > LOCALS {
             return too_many(
                 format!(

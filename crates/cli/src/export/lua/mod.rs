@@ -17,7 +17,7 @@ mod template;
 use flagred::{board::Plan, estimator::Estimator, follower::Settings, verdict::LevelSettings};
 
 use limits::Size;
-use template::Filling;
+use template::TemplateValues;
 
 /// The key of the script's parameter table. No script that ships with ArduPilot uses it.
 const PARAMETER_TABLE: u8 = 157;
@@ -67,20 +67,20 @@ const SCRIPT: [(&str, &str); 13] = [
 ];
 
 /// The reason why a profile cannot be exported as a script, with advice.
-pub(super) struct Unsupported {
+pub(super) struct UnsupportedFeature {
     pub(super) message: String,
     pub(super) help: &'static str,
 }
 
-impl Unsupported {
+impl UnsupportedFeature {
     fn new(message: String, help: &'static str) -> Self {
-        Unsupported { message, help }
+        UnsupportedFeature { message, help }
     }
 }
 
 /// Returns the script.
-pub(super) fn text(estimator: &Estimator, plan: &Plan<'_>) -> Result<String, Unsupported> {
-    let mut filling = Filling::default();
+pub(super) fn text(estimator: &Estimator, plan: &Plan<'_>) -> Result<String, UnsupportedFeature> {
+    let mut filling = TemplateValues::default();
     let origin = super::origin(plan, &estimator.profile().rules, "--lua");
     filling.put("heading", vec![format!("-- {}", comment(&origin))]);
     constants(plan, &mut filling);
@@ -153,7 +153,7 @@ fn commented(parts: &[&str]) -> String {
 }
 
 /// Adds the settings of the profile and the script's own constants, under the names that the parts use.
-fn constants(plan: &Plan<'_>, filling: &mut Filling) {
+fn constants(plan: &Plan<'_>, filling: &mut TemplateValues) {
     let Settings {
         sampling,
         elevated_risk,

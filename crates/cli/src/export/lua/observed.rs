@@ -7,7 +7,7 @@ use flagred::{
     channel::{Channel, Motors, Observed, Statistic, Threshold},
 };
 
-use super::{frames, number, template::Filling};
+use super::{frames, number, template::TemplateValues};
 
 /// Rounding error of commands in 32 bits.
 const ROUNDING: f64 = 1e-6;
@@ -186,7 +186,7 @@ impl Script {
         3 + self.values.len()
     }
 
-    pub(super) fn finish(mut self, plan: &Plan<'_>, filling: &mut Filling) {
+    pub(super) fn finish(mut self, plan: &Plan<'_>, filling: &mut TemplateValues) {
         let uses_yaw =
             self.lists.contains(&"less_yaw") || plan.settings.verdict.notices.imbalance.is_some();
         if uses_yaw && !self.efforts.contains(&2) {

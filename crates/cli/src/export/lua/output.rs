@@ -2,7 +2,7 @@
 
 use flagred::board::table::{ClosedForm, Moment, Output, Table};
 
-use super::{Unsupported, number};
+use super::{UnsupportedFeature, number};
 
 /// The coefficients of the terms of all outputs, at the indices of their firing strengths.
 #[derive(Default)]
@@ -19,7 +19,7 @@ impl Coefficients {
         table: &Table<'_>,
         (name, output): (&str, &Output),
         first: usize,
-    ) -> Result<usize, Unsupported> {
+    ) -> Result<usize, UnsupportedFeature> {
         let range = output.first as usize..output.end as usize;
         let strengths = (output.end_strength - output.first_strength) as usize;
         match output.form() {
@@ -50,14 +50,14 @@ impl Coefficients {
                 }
                 Ok(strengths)
             }
-            ClosedForm::WeightedAverage | ClosedForm::WeightedSum => Err(Unsupported::new(
+            ClosedForm::WeightedAverage | ClosedForm::WeightedSum => Err(UnsupportedFeature::new(
                 format!(
                     "output `{name}` is a Takagi-Sugeno output, which the script does not support"
                 ),
                 "the script supports the centroid, with `implication: product` and `aggregation: sum` or over a `partition` with \
                  minimum and maximum",
             )),
-            _ => Err(Unsupported::new(
+            _ => Err(UnsupportedFeature::new(
                 format!(
                     "output `{name}` has neither the centroid of a sum of products nor that of minimum and maximum over a partition; the script supports no others"
                 ),

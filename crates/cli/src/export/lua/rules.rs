@@ -10,14 +10,14 @@ use flagred::{
 use fuzzy::{Model, rule::Consequent};
 
 use super::{
-    Unsupported,
+    UnsupportedFeature,
     cause::{Causes, propositions},
     comment,
     condition::{Expressions, corners},
     limits::Size,
     number,
     output::{Coefficients, defuzzify},
-    template::Filling,
+    template::TemplateValues,
 };
 
 /// Outputs that are computed in one pass, with their tables.
@@ -33,9 +33,9 @@ struct Stage<'a> {
 pub(super) fn fill(
     estimator: &Estimator,
     plan: &Plan<'_>,
-    filling: &mut Filling,
+    filling: &mut TemplateValues,
     size: &mut Size,
-) -> Result<(), Unsupported> {
+) -> Result<(), UnsupportedFeature> {
     let model = estimator.model();
     let risk = plan.output as usize;
     let needed = needed(model, risk);
@@ -62,7 +62,7 @@ pub(super) fn fill(
             continue;
         }
         if !stage.table.blocks.is_empty() {
-            return Err(Unsupported::new(
+            return Err(UnsupportedFeature::new(
                 "the rule set has activation methods or blocks with different operators, which the script does not support".into(),
                 "the script supports rules that all fire, with one AND and one OR",
             ));
@@ -76,7 +76,7 @@ pub(super) fn fill(
             }
             values.extend(defuzzify(of, (first, strengths), place));
             let all = fires_of(&stage, of, first, &mut expressions, size)?;
-            for Fire { adds, lines } in all {
+            for FiringCode { adds, lines } in all {
                 sums |= adds;
                 maxima |= !adds;
                 fires.extend(lines);
@@ -122,7 +122,7 @@ pub(super) fn fill(
 }
 
 /// The code that fires a rule for an output.
-struct Fire {
+struct FiringCode {
     /// Whether the firing strength is added, instead of the largest one being kept.
     adds: bool,
     lines: [String; 2],
@@ -135,7 +135,7 @@ fn fires_of(
     first: usize,
     expressions: &mut Expressions<'_>,
     size: &mut Size,
-) -> Result<Vec<Fire>, Unsupported> {
+) -> Result<Vec<FiringCode>, UnsupportedFeature> {
     let model = expressions.model;
     let mut fires = Vec::new();
     for (rule, i) in model.rules.iter().zip(1..) {
@@ -159,7 +159,7 @@ fn fires_of(
             };
             let adds = action.sums != 0;
             let fire = if adds { "add" } else { "fire" };
-            fires.push(Fire {
+            fires.push(FiringCode {
                 adds,
                 lines: [
                     format!("  -- {}", comment(&rule.rule.to_string())),
@@ -247,7 +247,7 @@ fn point(plan: &Plan<'_>) -> Vec<String> {
     inputs.map(line).collect()
 }
 
-fn fill_gaps(plan: &Plan<'_>, filling: &mut Filling) {
+fn fill_gaps(plan: &Plan<'_>, filling: &mut TemplateValues) {
     filling.set("filled", plan.filled.is_some());
     let Some(knots) = plan.filled else {
         return;

@@ -3,13 +3,13 @@
 
 /// The values for a template.
 #[derive(Default)]
-pub(super) struct Filling {
+pub(super) struct TemplateValues {
     holds: Vec<(&'static str, bool)>,
     lines: Vec<(&'static str, Vec<String>)>,
     constants: Vec<(&'static str, String)>,
 }
 
-impl Filling {
+impl TemplateValues {
     /// Sets a condition.
     pub(super) fn set(&mut self, name: &'static str, holds: bool) {
         self.holds.push((name, holds));

@@ -9,7 +9,7 @@ use flagred_flightlog::{Parameter, Vehicle, VehicleKind, mavlink::Setup};
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
-use super::{Doubt, Source};
+use super::{Source, UntrustedPacket};
 
 /// An event of a watch; serialised, a line of `--jsonl` with the names of docs/json.md.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
@@ -25,7 +25,7 @@ pub(crate) enum Event {
         /// The MAVLink system id of the vehicle.
         system: u8,
         #[serde(flatten, serialize_with = "about")]
-        #[schemars(with = "About<'_>")]
+        #[schemars(with = "VehicleDescription<'_>")]
         vehicle: Vehicle,
     },
     /// The vehicle sends motor commands and is trusted; other senders with its system id are not.
@@ -47,7 +47,7 @@ pub(crate) enum Event {
     },
     /// Packets with the system id of the vehicle are not trusted; reported once for each kind.
     Doubt {
-        what: Doubt,
+        what: UntrustedPacket,
         system: u8,
         component: u8,
         /// The sender's address and port; null on a serial port.
@@ -68,7 +68,7 @@ pub(crate) enum Event {
     NotAMultirotor {
         system: u8,
         #[serde(flatten, serialize_with = "about")]
-        #[schemars(with = "About<'_>")]
+        #[schemars(with = "VehicleDescription<'_>")]
         vehicle: Vehicle,
     },
     /// Motors and limits are known or assumed; repeated when more about them becomes known.
@@ -91,10 +91,10 @@ pub(crate) enum Event {
     /// A message as text.
     Note { text: String },
     /// The link or the motor commands are lost.
-    Lost { what: Silent },
+    Lost { what: SilentSource },
     /// The link or the motor commands are back.
     Back {
-        what: Silent,
+        what: SilentSource,
         /// The duration of the silence, in seconds.
         after_s: f64,
     },
@@ -135,7 +135,7 @@ pub(crate) enum Event {
 
 /// A vehicle in an event.
 #[derive(Serialize, JsonSchema)]
-struct About<'a> {
+struct VehicleDescription<'a> {
     /// The kind of vehicle, such as `multirotor`.
     kind: VehicleKind,
     /// Frame or type name.
@@ -145,7 +145,7 @@ struct About<'a> {
 }
 
 fn about<S: Serializer>(vehicle: &Vehicle, serializer: S) -> Result<S::Ok, S::Error> {
-    let about = About {
+    let about = VehicleDescription {
         kind: vehicle.kind,
         frame: vehicle.frame.as_deref(),
         firmware: vehicle.firmware.as_deref(),
@@ -159,7 +159,7 @@ pub(crate) enum End {
     /// The vehicle landed.
     Landed,
     /// The vehicle was in the air when contact was lost.
-    Lost(Lost),
+    Lost(ContactLoss),
     /// The vehicle is still in the air and is received.
     LeftInAir(StopReason),
 }
@@ -167,7 +167,7 @@ pub(crate) enum End {
 /// The reason why contact was lost in the air.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Lost {
+pub(crate) enum ContactLoss {
     Link,
     MotorCommands,
     /// The vehicle rebooted.
@@ -199,7 +199,7 @@ pub(crate) struct FlightSummary {
 /// The source that fell silent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Silent {
+pub(crate) enum SilentSource {
     Link,
     MotorCommands,
 }

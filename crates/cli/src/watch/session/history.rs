@@ -8,7 +8,7 @@ pub(super) const MOST: usize = 30_000;
 
 /// A sample as it was received.
 #[derive(Debug, Clone)]
-pub(super) struct Received {
+pub(super) struct ReceivedSample {
     pub(super) t_s: f64,
     /// Whether the vehicle reports that it is in the air.
     pub(super) in_air: Option<bool>,
@@ -21,7 +21,7 @@ pub(super) struct Received {
 #[derive(Debug)]
 pub(super) struct History {
     most: usize,
-    samples: Vec<Received>,
+    samples: Vec<ReceivedSample>,
     is_cut: bool,
 }
 
@@ -36,7 +36,7 @@ impl History {
     }
 
     /// Adds a sample. A flight that is too long is not stored at all.
-    pub(super) fn push(&mut self, received: Received) {
+    pub(super) fn push(&mut self, received: ReceivedSample) {
         self.is_cut |= self.samples.len() >= self.most;
         match self.is_cut {
             true => self.samples = Vec::new(),
@@ -57,7 +57,7 @@ impl History {
     }
 
     /// The samples since take-off; `None` if some were dropped.
-    pub(super) fn whole(&self) -> Option<&[Received]> {
+    pub(super) fn whole(&self) -> Option<&[ReceivedSample]> {
         (!self.is_cut).then_some(&self.samples[..])
     }
 }

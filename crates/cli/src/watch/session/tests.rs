@@ -1,6 +1,6 @@
 use flagred::{shipped, verdict::Level};
 use flagred_flightlog::mavlink::{
-    Next, Setup,
+    PacketScan, Setup,
     dialect::{
         COMMAND_ACK_DATA, EXTENDED_SYS_STATE_DATA, HEARTBEAT_DATA, MavAutopilot, MavCmd,
         MavLandedState, MavMessage, MavModeFlag, MavParamType, MavResult, MavState, MavType,
@@ -69,11 +69,11 @@ impl<'e> Bench<'e> {
         }
     }
 
-    fn take(&mut self, out: Out) {
+    fn take(&mut self, out: SessionOutput) {
         self.events.extend(out.events);
         self.sent
             .extend(out.packets.iter().map(|bytes| match next_packet(bytes) {
-                Next::Packet(packet) => packet.message().unwrap(),
+                PacketScan::Packet(packet) => packet.message().unwrap(),
                 other => panic!("{other:?}"),
             }));
     }
@@ -85,10 +85,10 @@ impl<'e> Bench<'e> {
 
     /// Receives the bytes of a packet from an address.
     fn hear_bytes(&mut self, source: Source, bytes: &[u8]) {
-        let Next::Packet(packet) = next_packet(bytes) else {
+        let PacketScan::Packet(packet) = next_packet(bytes) else {
             panic!("{bytes:?}");
         };
-        let mut out = Out::default();
+        let mut out = SessionOutput::default();
         self.session.receive(self.now_s, source, &packet, &mut out);
         self.take(out);
     }
@@ -106,7 +106,7 @@ impl<'e> Bench<'e> {
         let end_s = self.now_s + seconds;
         while self.now_s < end_s {
             self.now_s += 0.02;
-            let mut out = Out::default();
+            let mut out = SessionOutput::default();
             self.session.tick(self.now_s, &mut out);
             self.take(out);
         }
@@ -302,7 +302,7 @@ fn a_flight_at_the_limit_is_reported_once_per_level() {
     // Values are sent for half a minute of the receiver's clock, four times a second.
     let values = bench.count_sent(|message| matches!(message, MavMessage::NAMED_VALUE_FLOAT(_)));
     assert!((160..=260).contains(&values), "{values}");
-    let mut out = Out::default();
+    let mut out = SessionOutput::default();
     assert_eq!(bench.session.finish(&mut out), Verdict::Known(Level::Fail));
 }
 
@@ -328,7 +328,7 @@ fn a_risk_without_a_motor_at_its_limit_is_reported_with_its_meaning() {
         text.contains(" %, sudden change") && text.len() <= 50,
         "{text}"
     );
-    let mut out = Out::default();
+    let mut out = SessionOutput::default();
     bench.session.finish(&mut out);
     let ended = out.events.iter().find_map(|event| match event {
         Event::Ended { finding } => Some(finding),
@@ -368,7 +368,7 @@ fn a_lasting_imbalance_is_reported_with_its_motor_until_landing() {
     let (text, motor) = told.unwrap();
     assert!(text.starts_with("FLAGRED: WARN motor 3 weak: +"), "{text}");
     assert_eq!(motor, 3);
-    let mut out = Out::default();
+    let mut out = SessionOutput::default();
     assert_eq!(bench.session.finish(&mut out), Verdict::Known(Level::Warn));
 }
 
@@ -413,9 +413,9 @@ fn a_silence_makes_the_risk_unknown_and_is_reported_once() {
     bench.wait(1.5);
     assert_eq!(bench.count(|event| matches!(event, Event::Lost { .. })), 0);
     bench.wait(5.0);
-    let lost = |what: Silent| move |event: &Event| matches!(event, Event::Lost { what: of } if *of == what);
-    assert_eq!(bench.count(lost(Silent::Link)), 1);
-    assert_eq!(bench.count(lost(Silent::MotorCommands)), 0);
+    let lost = |what: SilentSource| move |event: &Event| matches!(event, Event::Lost { what: of } if *of == what);
+    assert_eq!(bench.count(lost(SilentSource::Link)), 1);
+    assert_eq!(bench.count(lost(SilentSource::MotorCommands)), 0);
     let view = bench.session.view().unwrap();
     assert!(view.latest.is_none() && view.margin.is_none() && view.motors.is_empty());
     let asked = bench.sent.len();
@@ -427,7 +427,7 @@ fn a_silence_makes_the_risk_unknown_and_is_reported_once() {
 
     // Only heartbeats arrive: the link is back, but the motor commands are still missing.
     bench.wait_beating(4, true);
-    assert_eq!(bench.count(lost(Silent::MotorCommands)), 1);
+    assert_eq!(bench.count(lost(SilentSource::MotorCommands)), 1);
     assert!(bench.session.view().unwrap().latest.is_none());
     bench.hover(40.0, 1.0, 1500);
     assert_eq!(bench.count(|event| matches!(event, Event::Back { .. })), 2);
@@ -476,7 +476,7 @@ fn a_vehicle_whose_motors_are_not_all_known_ends_with_that_reason() {
         bench.hear(&servo(10.0 + f64::from(i) / 25.0, [1500; 4]));
         bench.wait(0.03);
     }
-    let verdict = bench.session.finish(&mut Out::default());
+    let verdict = bench.session.finish(&mut SessionOutput::default());
     assert_eq!(verdict.to_string(), "NA");
     let Verdict::NotAvailable(reason) = verdict else {
         panic!("{verdict:?}")

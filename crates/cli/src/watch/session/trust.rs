@@ -24,7 +24,7 @@ const PARAM_VALUE: u32 = 22;
 /// A kind of packet that is not trusted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Doubt {
+pub(crate) enum UntrustedPacket {
     /// The vehicle's autopilot, from another address.
     SecondSender,
     /// A parameter from another component of the vehicle.
@@ -35,7 +35,7 @@ pub(crate) enum Doubt {
 
 /// The numbers of packets that were not trusted.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, JsonSchema)]
-pub(crate) struct Doubts {
+pub(crate) struct UntrustedCounts {
     /// Packets with the ids of the vehicle's autopilot, from another address.
     pub(crate) second_sender: u64,
     /// Parameters from other components.
@@ -44,13 +44,13 @@ pub(crate) struct Doubts {
     pub(crate) clock_jumps: u64,
 }
 
-impl Doubts {
+impl UntrustedCounts {
     /// Adds to a count, and returns whether this is the first doubt of its kind.
-    pub(super) fn add(&mut self, doubt: Doubt, count: u64) -> bool {
+    pub(super) fn add(&mut self, doubt: UntrustedPacket, count: u64) -> bool {
         let total = match doubt {
-            Doubt::SecondSender => &mut self.second_sender,
-            Doubt::OtherComponent => &mut self.other_component,
-            Doubt::ClockJump => &mut self.clock_jumps,
+            UntrustedPacket::SecondSender => &mut self.second_sender,
+            UntrustedPacket::OtherComponent => &mut self.other_component,
+            UntrustedPacket::ClockJump => &mut self.clock_jumps,
         };
         let is_first = *total == 0 && count > 0;
         *total += count;
@@ -59,10 +59,10 @@ impl Doubts {
 }
 
 /// The reason to doubt a packet that has the vehicle's system but may come from another sender.
-pub(super) fn doubt_of(packet: &Packet<'_>) -> Option<Doubt> {
+pub(super) fn doubt_of(packet: &Packet<'_>) -> Option<UntrustedPacket> {
     match (packet.component, packet.id) {
-        (1, _) => Some(Doubt::SecondSender),
-        (_, PARAM_VALUE) => Some(Doubt::OtherComponent),
+        (1, _) => Some(UntrustedPacket::SecondSender),
+        (_, PARAM_VALUE) => Some(UntrustedPacket::OtherComponent),
         _ => None,
     }
 }

@@ -1,6 +1,6 @@
 //! Reasons why the rows of a flight CSV are refused as a whole: other units, other clocks, a wrong order.
 
-use super::{Rows, problem};
+use super::{RowCollector, problem};
 use crate::ReadError;
 
 const HELP_PULSES: &str = "name columns of fractions from 0 to 1 `motor1`..; divide percent by 100 first; for DShot see docs/flight-csv.md";
@@ -10,7 +10,7 @@ const LEAST_STEPS: usize = 5;
 /// The smallest step between motor commands that is recognised as microseconds: 1 kHz.
 const LEAST_STEP_US: f64 = 1000.0;
 
-impl Rows {
+impl RowCollector {
     /// The reason why the file is refused. The clock of a file that this crate wrote is in seconds.
     pub(in crate::csv) fn refusal(&mut self, is_ours: bool, messages: u64) -> Option<ReadError> {
         let refused = self.refused.take();

@@ -59,7 +59,7 @@ struct Link<'e> {
 }
 
 impl Link<'_> {
-    fn datagram(&mut self, source: Source, bytes: &[u8], out: &mut Out) {
+    fn datagram(&mut self, source: Source, bytes: &[u8], out: &mut SessionOutput) {
         self.stream.push(bytes);
         while let Some(packet) = self.stream.packet() {
             let session = &mut self.bench.session;
@@ -75,7 +75,7 @@ impl Link<'_> {
         packets: usize,
         mut next: impl FnMut(usize) -> (Source, Vec<u8>),
     ) -> f64 {
-        let mut out = Out::default();
+        let mut out = SessionOutput::default();
         let mut t_s = from_s;
         for i in 0..packets {
             if i % SHARE == 0 {
@@ -94,7 +94,7 @@ impl Link<'_> {
                 assert!(is_harmless(&event), "{event:?}");
             }
             for packet in out.packets.drain(..) {
-                let Next::Packet(packet) = next_packet(&packet) else {
+                let PacketScan::Packet(packet) = next_packet(&packet) else {
                     panic!("{packet:?}");
                 };
                 assert_ne!(packet.id, 253, "a text is sent");

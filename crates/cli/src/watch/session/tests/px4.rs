@@ -218,7 +218,7 @@ fn limits_that_arrive_in_the_air_apply_to_the_whole_flight() {
     assert_eq!(bench.ready(), 2);
     assert_eq!(bench.flights(), (1, 0), "it is one flight");
     assert!(bench.count(|event| matches!(event, Event::Level { .. })) > 0);
-    let mut out = Out::default();
+    let mut out = SessionOutput::default();
     assert_ne!(bench.session.finish(&mut out), Verdict::Known(Level::Good));
 }
 
@@ -280,7 +280,7 @@ fn a_refused_parameter_that_arrives_in_the_air_clears_no_alarm() {
         bench.session.view().unwrap().latest.unwrap().level,
         Some(Level::Fail)
     );
-    let mut out = Out::default();
+    let mut out = SessionOutput::default();
     assert_eq!(bench.session.finish(&mut out), Verdict::Known(Level::Fail));
 }
 
@@ -403,10 +403,10 @@ fn an_unknown_message_of_the_vehicle_is_ignored() {
     let mut bench = Bench::new(&estimator, Some(191));
     bench.px4_beat();
     let bytes = packet(410, 160, &[7; 30]);
-    let Next::Unverified(unknown) = next_packet(&bytes) else {
+    let PacketScan::Unverified(unknown) = next_packet(&bytes) else {
         panic!("{:?}", next_packet(&bytes));
     };
-    let mut out = Out::default();
+    let mut out = SessionOutput::default();
     let mut receive = |packet: &Packet<'_>| bench.session.receive(1.0, None, packet, &mut out);
     assert!(receive(&unknown), "it is recorded");
     let other = Packet {
@@ -441,7 +441,7 @@ fn cut(in_the_air: impl Fn(&mut Bench<'_>)) -> (Vec<String>, Verdict) {
         _ => None,
     });
     let texts = texts.collect();
-    (texts, bench.session.finish(&mut Out::default()))
+    (texts, bench.session.finish(&mut SessionOutput::default()))
 }
 
 #[test]

@@ -69,7 +69,7 @@ fn without_a_battery_level_the_flight_has_no_verdict() {
     bench.hover(10.0, 30.0, 1500);
     // In MAVLink, -1 means unknown.
     bench.hover_with(40.0, -1);
-    let verdict = bench.session.finish(&mut Out::default());
+    let verdict = bench.session.finish(&mut SessionOutput::default());
     assert!(matches!(verdict, Verdict::NotAvailable(_)), "{verdict}");
 }
 

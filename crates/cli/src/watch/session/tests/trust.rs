@@ -35,7 +35,7 @@ impl Bench<'_> {
         self.session.view().map(|view| view.system)
     }
 
-    fn doubts_told(&self) -> Vec<Doubt> {
+    fn doubts_told(&self) -> Vec<UntrustedPacket> {
         let doubts = self.events.iter().filter_map(|event| match event {
             Event::Doubt { what, .. } => Some(*what),
             _ => None,
@@ -112,7 +112,7 @@ fn a_second_sender_is_reported_once_and_ignored_until_the_first_is_silent() {
         liar.say(&mut bench, &servo(20.0 + f64::from(i) * 0.04, [1999; 4]));
     }
     bench.hover(20.0, 10.0, 1500);
-    assert_eq!(bench.doubts_told(), [Doubt::SecondSender]);
+    assert_eq!(bench.doubts_told(), [UntrustedPacket::SecondSender]);
     assert_eq!(bench.session.doubts().second_sender, 300);
     assert_eq!(bench.count(|event| matches!(event, Event::Over { .. })), 0);
     assert_eq!(bench.count(|event| matches!(event, Event::Level { .. })), 0);
@@ -132,7 +132,7 @@ fn a_second_sender_is_reported_once_and_ignored_until_the_first_is_silent() {
     // The first sender is now the second one.
     bench.beat(true);
     assert_eq!(bench.session.doubts().second_sender, 301);
-    let mut out = Out::default();
+    let mut out = SessionOutput::default();
     bench.session.finish(&mut out);
     let is_left = |event: &Event| {
         matches!(
@@ -168,7 +168,7 @@ fn another_system_is_followed_only_long_after_the_vehicle_fell_silent() {
         matches!(
             event,
             Event::Over {
-                end: End::Lost(Lost::Link),
+                end: End::Lost(ContactLoss::Link),
                 ..
             }
         )
@@ -201,7 +201,7 @@ fn parameters_of_other_components_are_ignored() {
     bench.all_parameters();
     bench.wait(0.1);
     assert_eq!(bench.setups()[0].range.high, 2000.0);
-    assert_eq!(bench.doubts_told(), [Doubt::OtherComponent]);
+    assert_eq!(bench.doubts_told(), [UntrustedPacket::OtherComponent]);
     assert_eq!(bench.session.doubts().other_component, 3);
 }
 
@@ -224,7 +224,7 @@ fn a_clock_that_jumps_once_is_not_a_reboot() {
     }
     assert_eq!(bench.count(|event| matches!(event, Event::Rebooted)), 0);
     assert_eq!(bench.count(|event| matches!(event, Event::Level { .. })), 0);
-    assert_eq!(bench.doubts_told(), [Doubt::ClockJump]);
+    assert_eq!(bench.doubts_told(), [UntrustedPacket::ClockJump]);
     assert_eq!(bench.session.doubts().clock_jumps, 200);
     let latest = bench.session.view().unwrap().latest.unwrap();
     assert!(latest.risk.is_ok() && latest.t_s > 113.0, "{latest:?}");
@@ -319,7 +319,7 @@ fn an_echo_of_the_watch_is_not_taken_for_another_watch() {
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);
     bench.all_parameters();
-    let mut out = Out::default();
+    let mut out = SessionOutput::default();
     bench.session.tick(1.1, &mut out);
     bench.session.tick(2.2, &mut out);
     assert!(!out.packets.is_empty());

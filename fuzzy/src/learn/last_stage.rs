@@ -13,7 +13,7 @@ use crate::{
 ///
 /// # Example: a fan that depends on a comfort for which samples have no value
 /// ```
-/// use fuzzy::learn::{Learner, Settings, Unchained};
+/// use fuzzy::learn::{Learner, Settings, LastStage};
 ///
 /// let model = fuzzy::yaml::parse("
 /// fuzzy: 1
@@ -26,7 +26,7 @@ use crate::{
 ///   - IF heat IS cool THEN comfort IS good
 ///   - IF heat IS hot THEN comfort IS poor
 /// ")?.model;
-/// let chain = Unchained::new(&model)?;
+/// let chain = LastStage::new(&model)?;
 /// let mut learner = Learner::new(chain.model(), Settings::default())?;
 /// for sample in [[5.0, 1.0], [38.0, 8.5]] {
 ///     learner.add(&chain.values(&sample)?, 1.0)?;
@@ -36,7 +36,7 @@ use crate::{
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct Unchained {
+pub struct LastStage {
     whole: Model,
     target: usize,
     /// The other outputs with their rules.
@@ -47,7 +47,7 @@ pub struct Unchained {
     model: Model,
 }
 
-impl Unchained {
+impl LastStage {
     /// Separates the measured output of a model, [`Model::measured_output`], from its chain. The inputs of the learner
     /// are the variables that its rules read. If it has no rules, they are the outputs that no other output reads, and
     /// the inputs that those outputs do not depend on.
@@ -55,12 +55,12 @@ impl Unchained {
     /// # Errors
     /// The model has several outputs and none of them is the measured one, or the rules of the other outputs cannot be
     /// used.
-    pub fn new(model: &Model) -> Result<Unchained, LearnError> {
+    pub fn new(model: &Model) -> Result<LastStage, LearnError> {
         let outputs = LearnError::Outputs {
             outputs: model.last_outputs().len(),
         };
         let target = model.measured_output().ok_or(outputs)?;
-        let mut unchained = Unchained {
+        let mut last_stage = LastStage {
             whole: model.clone(),
             target,
             before: None,
@@ -68,7 +68,7 @@ impl Unchained {
             model: model.clone(),
         };
         if model.outputs.len() == 1 {
-            return Ok(unchained);
+            return Ok(last_stage);
         }
         let name = model.outputs.get(target).map(|o| &o.variable.name);
         let is_of_target = |output: &String| Some(output) == name;
@@ -83,18 +83,18 @@ impl Unchained {
             .filter(|(_, variable)| read.contains(&variable.name))
             .map(|(index, variable)| (index, variable.clone()))
             .unzip();
-        unchained.picks = picks;
-        unchained.model.inputs = inputs;
-        unchained
+        last_stage.picks = picks;
+        last_stage.model.inputs = inputs;
+        last_stage
             .model
             .outputs
             .retain(|o| is_of_target(&o.variable.name));
-        unchained.model.rules = own;
+        last_stage.model.rules = own;
         let engine = Engine::new(&before).map_err(|findings| LearnError::Chain {
             message: alloc::format!("{findings}"),
         })?;
-        unchained.before = Some(engine);
-        Ok(unchained)
+        last_stage.before = Some(engine);
+        Ok(last_stage)
     }
 
     /// Returns the model for the learner: the measured output, its rules, and the inputs of the learner.

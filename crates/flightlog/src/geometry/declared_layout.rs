@@ -9,7 +9,7 @@ const PX4_ROTORS: u16 = 12;
 
 /// The motor layout that a log or a live vehicle declares.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) enum Declared {
+pub(crate) enum DeclaredLayout {
     #[default]
     Nothing,
     /// A frame with a fixed table; its type may be unknown.
@@ -26,7 +26,7 @@ pub(crate) enum Declared {
     },
 }
 
-impl Declared {
+impl DeclaredLayout {
     pub(super) fn source(&self) -> &str {
         match self {
             Self::Nothing => "",

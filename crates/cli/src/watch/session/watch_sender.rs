@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use flagred_flightlog::mavlink::{Packet, Sender, Version, dialect::MavMessage};
 
-use super::{Event, Out};
+use super::{Event, SessionOutput};
 use crate::watch::voice;
 
 /// Another watch is considered gone after this silence.
@@ -23,25 +23,25 @@ const TEXT_HEARD_S: f64 = 2.0;
 const TEXTS: usize = 8;
 
 /// The watch as a sender.
-pub(super) struct Speech {
+pub(super) struct WatchSender {
     /// `None` if the watch only listens.
     sender: Option<Sender>,
     /// Whether it sends even if another watch sends.
     insists: bool,
-    other: Option<Other>,
+    other: Option<OtherWatch>,
     told: Option<(f64, bool)>,
     has_told_risk: bool,
     sent: VecDeque<Vec<u8>>,
     /// The bits of each recent FR_RISK of this watch or another one, with the time.
     values: VecDeque<(f64, u32)>,
     /// Texts that are sent unless the other watch sends them first.
-    waiting: VecDeque<Waiting>,
+    waiting: VecDeque<DelayedText>,
     /// The topics of recent texts of others, with the time.
     heard: VecDeque<(f64, String)>,
 }
 
 /// A delayed text, which another watch should send.
-struct Waiting {
+struct DelayedText {
     due_s: f64,
     topic: Option<String>,
     to: (Version, u8),
@@ -49,7 +49,7 @@ struct Waiting {
 }
 
 /// Another watch of the same vehicle.
-struct Other {
+struct OtherWatch {
     component: u8,
     heard_s: f64,
     /// Whether it has reported its running time. If not, only its values were received.
@@ -57,9 +57,9 @@ struct Other {
     goes_first: bool,
 }
 
-impl Speech {
-    pub(super) fn new(sender: Option<Sender>, insists: bool) -> Speech {
-        Speech {
+impl WatchSender {
+    pub(super) fn new(sender: Option<Sender>, insists: bool) -> WatchSender {
+        WatchSender {
             sender,
             insists,
             other: None,
@@ -87,7 +87,7 @@ impl Speech {
         &mut self,
         (version, system): (Version, u8),
         message: &MavMessage,
-        out: &mut Out,
+        out: &mut SessionOutput,
     ) {
         if let Some(sender) = &mut self.sender {
             out.packets.push(sender.packet(version, system, message));
@@ -100,7 +100,7 @@ impl Speech {
         now_s: f64,
         to: (Version, u8),
         message: &MavMessage,
-        out: &mut Out,
+        out: &mut SessionOutput,
     ) {
         if !self.speaks() {
             return;
@@ -119,7 +119,7 @@ impl Speech {
         now_s: f64,
         to: (Version, u8),
         message: &MavMessage,
-        out: &mut Out,
+        out: &mut SessionOutput,
     ) {
         if self.speaks() {
             self.utter(to, message, out);
@@ -133,7 +133,7 @@ impl Speech {
             return;
         }
         self.waiting.truncate(TEXTS - 1);
-        self.waiting.push_back(Waiting {
+        self.waiting.push_back(DelayedText {
             due_s: now_s + TEXT_WAIT_S,
             topic,
             to,
@@ -141,7 +141,7 @@ impl Speech {
         });
     }
 
-    fn utter(&mut self, to: (Version, u8), message: &MavMessage, out: &mut Out) {
+    fn utter(&mut self, to: (Version, u8), message: &MavMessage, out: &mut SessionOutput) {
         self.ask(to, message, out);
         if let Some(packet) = out.packets.last() {
             self.sent.truncate(ECHOES - 1);
@@ -157,7 +157,13 @@ impl Speech {
     /// Processes a packet of another watch of the vehicle. The watch that has been running longer has precedence. So do a program on the
     /// autopilot itself, and a sender that reports no running time and was received before this watch sent a risk. An autopilot that
     /// `echoes` repeats the values of others as its own.
-    pub(super) fn hear(&mut self, now_s: f64, packet: &Packet<'_>, echoes: bool, out: &mut Out) {
+    pub(super) fn hear(
+        &mut self,
+        now_s: f64,
+        packet: &Packet<'_>,
+        echoes: bool,
+        out: &mut SessionOutput,
+    ) {
         if self.sent.iter().any(|sent| sent == packet.bytes) {
             return;
         }
@@ -202,7 +208,7 @@ impl Speech {
         }) {
             return;
         }
-        self.other = Some(Other {
+        self.other = Some(OtherWatch {
             component: packet.component,
             heard_s: now_s,
             has_age: age_s.is_some() || known.is_some_and(|known| known.has_age),
@@ -212,7 +218,7 @@ impl Speech {
     }
 
     /// Resumes sending if the other watch is gone, and sends the texts that it did not send.
-    pub(super) fn tick(&mut self, now_s: f64, system: u8, out: &mut Out) {
+    pub(super) fn tick(&mut self, now_s: f64, system: u8, out: &mut SessionOutput) {
         // The texts are sorted by their time.
         while (self.waiting.front()).is_some_and(|text| now_s >= text.due_s) {
             if let Some(text) = self.waiting.pop_front() {
@@ -239,7 +245,7 @@ impl Speech {
         self.heard.clear();
     }
 
-    fn tell(&mut self, now_s: f64, system: u8, out: &mut Out) {
+    fn tell(&mut self, now_s: f64, system: u8, out: &mut SessionOutput) {
         let speaks = self.speaks();
         let is_news = match self.told {
             None => true,

@@ -2,7 +2,7 @@
 
 use core::hint::select_unpredictable;
 
-use super::conjunctions::{Cells, Partial};
+use super::conjunctions::{Cells, PartialConjunction};
 use super::operators::{larger, smaller};
 use super::results::number_of;
 use super::rules::Action;
@@ -11,31 +11,31 @@ use crate::rows::join;
 /// The strongest rule of an output in each of `L` rows. Of several equally strong rules it is the first in the model,
 /// regardless of the order in which they fire.
 #[derive(Debug, Clone, Copy)]
-pub struct Strongest<const L: usize = 1> {
+pub struct StrongestRule<const L: usize = 1> {
     pub(super) strength: [f64; L],
     /// The [number](number_of) of the rule; infinite if no rule has fired.
     pub(super) rule: [f64; L],
 }
 
-impl Strongest {
+impl StrongestRule {
     /// Creates the entry of a rule, from its index and its firing strength.
     #[cfg(feature = "simd")]
     pub(crate) fn of(strength: f64, rule: u32) -> Self {
-        Strongest {
+        StrongestRule {
             strength: [strength],
             rule: [number_of(rule)],
         }
     }
 }
 
-impl<const L: usize> Strongest<L> {
+impl<const L: usize> StrongestRule<L> {
     /// No rule has fired yet.
-    pub const NONE: Self = Strongest {
+    pub const NONE: Self = StrongestRule {
         strength: [0.0; L],
         rule: [f64::INFINITY; L],
     };
 
-    /// Updates the strongest rule with a rule that follows all previous ones in the model. Like [`Strongest::or`], it
+    /// Updates the strongest rule with a rule that follows all previous ones in the model. Like [`StrongestRule::or`], it
     /// does not branch.
     #[inline(always)]
     fn or_later(&mut self, row: usize, strength: f64, rule: f64) {
@@ -61,7 +61,7 @@ pub(super) fn fires(strength: f64, least: f64) -> f64 {
 }
 
 /// A consumer of the rules that fire.
-pub(super) trait Act<const L: usize> {
+pub(super) trait FiringConsumer<const L: usize> {
     /// Performs the actions of rules in one row; `degree` is the degree of their antecedent.
     fn act(&mut self, actions: &[Action], row: usize, degree: f64);
 
@@ -71,7 +71,7 @@ pub(super) trait Act<const L: usize> {
 
     /// Performs the actions of cells of a uniform table. The contents of `reached` are unspecified afterwards.
     #[inline(always)]
-    fn act_in_cells(&mut self, cells: &Cells<'_>, reached: &mut [Partial<L>]) {
+    fn act_in_cells(&mut self, cells: &Cells<'_>, reached: &mut [PartialConjunction<L>]) {
         for cell in reached {
             for row in 0..L {
                 self.act(cells.actions_of(cell.at[row]), row, cell.degree[row]);
@@ -82,27 +82,27 @@ pub(super) trait Act<const L: usize> {
 
 /// The firing strengths and strongest rules that actions update.
 #[repr(C, align(64))]
-pub(super) struct Firing<'m, const L: usize> {
+pub(super) struct FiringStrengths<'m, const L: usize> {
     /// The strongest program if there is one output. It is kept in registers, because otherwise each rule would wait
     /// for memory. It is separate from `strongest`, because a vector that spans two cache lines takes twice as long.
-    one: Strongest<L>,
+    one: StrongestRule<L>,
     least: f64,
     strengths: &'m mut [[f64; L]],
-    strongest: &'m mut [Strongest<L>],
+    strongest: &'m mut [StrongestRule<L>],
     /// The [number](number_of) of the program that has fired and comes last in the model.
     latest: f64,
 }
 
-impl<'m, const L: usize> Firing<'m, L> {
+impl<'m, const L: usize> FiringStrengths<'m, L> {
     /// Starts before any rule has fired; all firing strengths are 0.
     #[inline(always)]
     pub(super) fn new(
         least: f64,
         strengths: &'m mut [[f64; L]],
-        strongest: &'m mut [Strongest<L>],
+        strongest: &'m mut [StrongestRule<L>],
     ) -> Self {
-        Firing {
-            one: Strongest::NONE,
+        FiringStrengths {
+            one: StrongestRule::NONE,
             least,
             strengths,
             strongest,
@@ -123,7 +123,7 @@ impl<'m, const L: usize> Firing<'m, L> {
     }
 }
 
-impl<const L: usize> Act<L> for Firing<'_, L> {
+impl<const L: usize> FiringConsumer<L> for FiringStrengths<'_, L> {
     #[inline(always)]
     fn act(&mut self, actions: &[Action], row: usize, degree: f64) {
         for action in actions {
@@ -156,23 +156,23 @@ impl<const L: usize> Act<L> for Firing<'_, L> {
                     &strength,
                     rule,
                     larger,
-                    Strongest::or_later,
+                    StrongestRule::or_later,
                 ),
-                (0, false) => take(kept, strongest, &strength, rule, larger, Strongest::or),
+                (0, false) => take(kept, strongest, &strength, rule, larger, StrongestRule::or),
                 _ => take(
                     kept,
                     strongest,
                     &strength,
                     rule,
                     |a, b| a + b,
-                    Strongest::or,
+                    StrongestRule::or,
                 ),
             }
         }
     }
 
     #[inline(always)]
-    fn act_in_cells(&mut self, cells: &Cells<'_>, reached: &mut [Partial<L>]) {
+    fn act_in_cells(&mut self, cells: &Cells<'_>, reached: &mut [PartialConjunction<L>]) {
         if let ([one], 1, false) = (&mut *self.strongest, cells.actions_a_cell, cells.sums) {
             *one = fire_cells(cells, reached, self.strengths, self.least);
             return;
@@ -189,11 +189,11 @@ impl<const L: usize> Act<L> for Firing<'_, L> {
 #[inline(always)]
 fn take<const L: usize>(
     kept: &mut [f64; L],
-    strongest: &mut Strongest<L>,
+    strongest: &mut StrongestRule<L>,
     strength: impl Fn(usize) -> f64,
     rule: f64,
     join: impl Fn(f64, f64) -> f64,
-    or: impl Fn(&mut Strongest<L>, usize, f64, f64),
+    or: impl Fn(&mut StrongestRule<L>, usize, f64, f64),
 ) {
     for (row, kept) in kept.iter_mut().enumerate() {
         let strength = strength(row);
@@ -206,11 +206,11 @@ fn take<const L: usize>(
 #[inline(always)]
 fn fire_cells<const L: usize>(
     cells: &Cells<'_>,
-    reached: &mut [Partial<L>],
+    reached: &mut [PartialConjunction<L>],
     strengths: &mut [[f64; L]],
     least: f64,
-) -> Strongest<L> {
-    let mut strongest = Strongest::NONE;
+) -> StrongestRule<L> {
+    let mut strongest = StrongestRule::NONE;
     for cell in &mut *reached {
         let rows = cell.degree.iter_mut().zip(&mut cell.at).enumerate();
         for (row, (degree, at)) in rows {

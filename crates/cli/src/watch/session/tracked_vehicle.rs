@@ -13,8 +13,8 @@ use flagred_flightlog::{
 use fuzzy::drawing::number;
 
 use super::{
-    End, Event, FlightSummary, Lost, Out, Silent, Source, StopReason,
-    history::{History, Received},
+    ContactLoss, End, Event, FlightSummary, SessionOutput, SilentSource, Source, StopReason,
+    history::{History, ReceivedSample},
 };
 
 /// A link, or the motor commands on it, count as lost after this silence.
@@ -27,7 +27,7 @@ const HURRY_S: f64 = 1.0;
 const TELL_SLOWED_S: f64 = 60.0;
 
 /// A vehicle that is followed.
-pub(super) struct Tracked {
+pub(super) struct TrackedVehicle {
     pub(super) telemetry: Telemetry,
     /// The origin of the vehicle's packets.
     pub(super) source: Source,
@@ -45,14 +45,14 @@ pub(super) struct Tracked {
     /// The flight so far: parameters that arrive later may change motors or limits.
     pub(super) history: History,
     slowed_told_s: Option<f64>,
-    pub(super) watch: Option<Watch>,
+    pub(super) watch: Option<AssessedVehicle>,
     pub(super) received: u64,
     pub(super) missed: u64,
     pub(super) sequence: Option<u8>,
 }
 
 /// A vehicle whose motors are known.
-pub(super) struct Watch {
+pub(super) struct AssessedVehicle {
     pub(super) setup: Setup,
     pub(super) assessor: Assessor,
     pub(super) motors: Vec<f64>,
@@ -68,7 +68,7 @@ pub(super) struct Watch {
 }
 
 /// The current state. Values that are out of date are omitted.
-pub(crate) struct View<'a> {
+pub(crate) struct VehicleView<'a> {
     pub(crate) system: u8,
     pub(crate) vehicle: &'a Vehicle,
     pub(crate) is_armed: bool,
@@ -85,10 +85,15 @@ pub(crate) struct View<'a> {
     pub(crate) latest: Option<Update>,
 }
 
-impl Tracked {
+impl TrackedVehicle {
     /// Starts following the vehicle that a heartbeat identified.
-    pub(super) fn new(telemetry: Telemetry, source: Source, now_s: f64, history: usize) -> Tracked {
-        Tracked {
+    pub(super) fn new(
+        telemetry: Telemetry,
+        source: Source,
+        now_s: f64,
+        history: usize,
+    ) -> TrackedVehicle {
+        TrackedVehicle {
             telemetry,
             source,
             is_proved: false,
@@ -109,10 +114,10 @@ impl Tracked {
     }
 
     /// The current state.
-    pub(super) fn view(&self) -> View<'_> {
+    pub(super) fn view(&self) -> VehicleView<'_> {
         let watch = self.watch.as_ref();
         let fresh = watch.filter(|watch| !self.link_lost && !watch.commands_lost);
-        View {
+        VehicleView {
             system: self.telemetry.system(),
             vehicle: self.telemetry.vehicle(),
             is_armed: self.telemetry.is_armed(),
@@ -176,7 +181,7 @@ impl Tracked {
         self.link_lost || self.is_gone
     }
 
-    pub(super) fn hear(&mut self, now_s: f64, out: &mut Out) {
+    pub(super) fn hear(&mut self, now_s: f64, out: &mut SessionOutput) {
         self.is_gone = false;
         if self.link_lost {
             self.link_lost = false;
@@ -187,7 +192,7 @@ impl Tracked {
                 watch.commands_s = now_s;
             }
             out.events.push(Event::Back {
-                what: Silent::Link,
+                what: SilentSource::Link,
                 after_s: now_s - self.heard_s,
             });
         }
@@ -202,7 +207,7 @@ impl Tracked {
         now_s: f64,
         asks: bool,
         estimator: &Estimator,
-        out: &mut Out,
+        out: &mut SessionOutput,
     ) -> Option<Verdict> {
         let waited_s = now_s - self.found_s;
         let done = if asks {
@@ -263,7 +268,7 @@ impl Tracked {
         };
         self.refused = None;
         ready(&setup, &self.telemetry, out);
-        let mut watch = Watch::new(setup, assessor, now_s);
+        let mut watch = AssessedVehicle::new(setup, assessor, now_s);
         let Some(flown) = self.history.whole() else {
             let verdict = self.end_flight(End::LeftInAir(StopReason::SetUpAnew), out);
             self.watch = Some(watch);
@@ -285,10 +290,12 @@ impl Tracked {
     }
 
     /// Reports a silent link and missing motor commands.
-    pub(super) fn listen(&mut self, now_s: f64, out: &mut Out) {
+    pub(super) fn listen(&mut self, now_s: f64, out: &mut SessionOutput) {
         if !self.link_lost && now_s - self.heard_s >= SILENT_S {
             self.link_lost = true;
-            out.events.push(Event::Lost { what: Silent::Link });
+            out.events.push(Event::Lost {
+                what: SilentSource::Link,
+            });
         }
         if let Some(watch) = &mut self.watch
             && !self.link_lost
@@ -296,14 +303,14 @@ impl Tracked {
             && now_s - watch.commands_s >= SILENT_S
         {
             watch.commands_lost = true;
-            let what = Silent::MotorCommands;
+            let what = SilentSource::MotorCommands;
             out.events.push(Event::Lost { what });
         }
     }
 
     /// Resets the state of the vehicle after a reboot. Returns the verdict of the flight that the reboot ended.
-    pub(super) fn start_anew(&mut self, now_s: f64, out: &mut Out) -> Option<Verdict> {
-        let verdict = self.end_flight(End::Lost(Lost::Reboot), out);
+    pub(super) fn start_anew(&mut self, now_s: f64, out: &mut SessionOutput) -> Option<Verdict> {
+        let verdict = self.end_flight(End::Lost(ContactLoss::Reboot), out);
         out.events.push(Event::Rebooted);
         self.watch = None;
         self.history.clear();
@@ -315,25 +322,25 @@ impl Tracked {
     }
 
     /// Ends the current flight because the watch ends.
-    pub(super) fn finish(&mut self, out: &mut Out) -> Option<Verdict> {
+    pub(super) fn finish(&mut self, out: &mut SessionOutput) -> Option<Verdict> {
         let commands_lost = self.watch.as_ref().is_some_and(|watch| watch.commands_lost);
         let end = match self.telemetry.is_in_air() {
-            _ if self.link_lost => End::Lost(Lost::Link),
+            _ if self.link_lost => End::Lost(ContactLoss::Link),
             false => End::Landed,
-            true if commands_lost => End::Lost(Lost::MotorCommands),
+            true if commands_lost => End::Lost(ContactLoss::MotorCommands),
             true => End::LeftInAir(StopReason::WatchEnded),
         };
         self.end_flight(end, out)
     }
 
-    pub(super) fn end_flight(&mut self, end: End, out: &mut Out) -> Option<Verdict> {
+    pub(super) fn end_flight(&mut self, end: End, out: &mut SessionOutput) -> Option<Verdict> {
         let watch = self.watch.as_mut()?;
         watch.end_flight(end, out)
     }
 }
 
 /// Reports motors and limits, and that a given range is ignored, if it is.
-fn ready(setup: &Setup, telemetry: &Telemetry, out: &mut Out) {
+fn ready(setup: &Setup, telemetry: &Telemetry, out: &mut SessionOutput) {
     out.events.push(Event::Ready {
         setup: setup.clone(),
         parameters: telemetry.parameters(),
@@ -344,9 +351,9 @@ fn ready(setup: &Setup, telemetry: &Telemetry, out: &mut Out) {
     }
 }
 
-impl Watch {
-    fn new(setup: Setup, assessor: Assessor, now_s: f64) -> Watch {
-        Watch {
+impl AssessedVehicle {
+    fn new(setup: Setup, assessor: Assessor, now_s: f64) -> AssessedVehicle {
+        AssessedVehicle {
             motors: vec![f64::NAN; setup.motors.len()],
             setup,
             assessor,
@@ -361,7 +368,7 @@ impl Watch {
     }
 
     /// Processes a sample.
-    pub(super) fn push(&mut self, received: &Received) -> Update {
+    pub(super) fn push(&mut self, received: &ReceivedSample) -> Update {
         self.setup
             .effective_commands(&received.pulses, &mut self.motors);
         self.assessor.push(&Sample {
@@ -373,7 +380,7 @@ impl Watch {
     }
 
     /// Reports inputs whose signals have not been received, and that therefore have the value of `if_missing`.
-    pub(super) fn note_assumed(&self, out: &mut Out) {
+    pub(super) fn note_assumed(&self, out: &mut SessionOutput) {
         let monitor = self.assessor.monitor();
         let inputs = &monitor.estimator().profile().inputs;
         for input in monitor.assumed().filter_map(|index| inputs.get(index)) {
@@ -389,7 +396,7 @@ impl Watch {
     }
 
     /// Processes the samples of a flight so far; findings are reported again, levels are not.
-    fn replay(&mut self, flown: &[Received], out: &mut Out) {
+    fn replay(&mut self, flown: &[ReceivedSample], out: &mut SessionOutput) {
         for received in flown {
             let update = self.push(received);
             self.level = update.level;
@@ -408,7 +415,7 @@ impl Watch {
     }
 
     /// Ends the current flight, if any, and returns its verdict.
-    pub(super) fn end_flight(&mut self, end: End, out: &mut Out) -> Option<Verdict> {
+    pub(super) fn end_flight(&mut self, end: End, out: &mut SessionOutput) -> Option<Verdict> {
         if !std::mem::take(&mut self.is_flying) {
             return None;
         }
@@ -434,7 +441,7 @@ impl Watch {
     }
 }
 
-pub(super) fn tell(ended: &[Finding], out: &mut Out) {
+pub(super) fn tell(ended: &[Finding], out: &mut SessionOutput) {
     let findings = ended.iter().cloned();
     out.events
         .extend(findings.map(|finding| Event::Ended { finding }));

@@ -13,7 +13,7 @@ const ROUNDING_S: f64 = 1e-6;
 
 /// An episode and its warning.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Answer {
+pub struct EpisodeMatch {
     /// The episode.
     pub episode: Span,
     /// The start of the warning that was on at the start of the episode, otherwise of the first one during it, in
@@ -21,7 +21,7 @@ pub struct Answer {
     pub warned_s: Option<f64>,
 }
 
-impl Answer {
+impl EpisodeMatch {
     /// Whether a warning that began before the episode was on at its start.
     pub fn is_announced(&self) -> bool {
         self.lead_s().is_some_and(|lead_s| lead_s > 0.0)
@@ -45,9 +45,9 @@ pub struct Warning {
 
 /// The matched episodes and warnings of a flight.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Judged {
+pub struct WarningMatches {
     /// The episodes that start within the judged times.
-    pub answers: Vec<Answer>,
+    pub episodes: Vec<EpisodeMatch>,
     /// The warnings within the judged times.
     pub warnings: Vec<Warning>,
 }
@@ -60,16 +60,21 @@ pub struct Judged {
 ///
 /// # Example: a false warning, and one four seconds ahead
 /// ```
-/// use flagred_evaluation::{Span, judge};
+/// use flagred_evaluation::{Span, match_warnings};
 ///
 /// let span = |from_s, to_s| Span { from_s, to_s };
 /// let (warnings, episodes) = ([span(5.0, 8.0), span(26.0, 40.0)], [span(30.0, 33.0)]);
-/// let judged = judge(&warnings, &episodes, &[span(0.0, 60.0)], None);
+/// let judged = match_warnings(&warnings, &episodes, &[span(0.0, 60.0)], None);
 /// let is_false: Vec<bool> = judged.warnings.iter().map(|warning| warning.is_false).collect();
 /// assert_eq!(is_false, [true, false]);
 /// ```
-pub fn judge(warnings: &[Span], episodes: &[Span], judged: &[Span], lost_s: Option<f64>) -> Judged {
-    let mut found = Judged::default();
+pub fn match_warnings(
+    warnings: &[Span],
+    episodes: &[Span],
+    judged: &[Span],
+    lost_s: Option<f64>,
+) -> WarningMatches {
+    let mut found = WarningMatches::default();
     for time in judged {
         let inside: Vec<Span> = warnings
             .iter()
@@ -80,11 +85,11 @@ pub fn judge(warnings: &[Span], episodes: &[Span], judged: &[Span], lost_s: Opti
             .filter(|warning| warning.from_s <= warning.to_s)
             .collect();
         let starting = episodes.iter().filter(|e| time.contains(e.from_s));
-        found.answers.extend(starting.map(|episode| {
+        found.episodes.extend(starting.map(|episode| {
             let on = inside.iter().find(|warning| {
                 warning.to_s >= episode.from_s - ROUNDING_S && warning.from_s <= episode.to_s
             });
-            Answer {
+            EpisodeMatch {
                 episode: *episode,
                 warned_s: on.map(|warning| warning.from_s),
             }
@@ -117,9 +122,13 @@ mod tests {
             .collect()
     }
 
-    fn run(warnings: &[(f64, f64)], episodes: &[(f64, f64)], lost_s: Option<f64>) -> Judged {
+    fn run(
+        warnings: &[(f64, f64)],
+        episodes: &[(f64, f64)],
+        lost_s: Option<f64>,
+    ) -> WarningMatches {
         let judged = spans(&[(10.0, 100.0)]);
-        judge(&spans(warnings), &spans(episodes), &judged, lost_s)
+        match_warnings(&spans(warnings), &spans(episodes), &judged, lost_s)
     }
 
     #[test]
@@ -136,11 +145,11 @@ mod tests {
         ];
         for (warning, lead_s, announced) in table {
             let found = run(&[warning], &[(50.0, 55.0)], None);
-            assert_eq!(found.answers.len(), 1);
-            assert_eq!(found.answers[0].lead_s(), lead_s, "{warning:?}");
-            assert_eq!(found.answers[0].is_announced(), announced, "{warning:?}");
+            assert_eq!(found.episodes.len(), 1);
+            assert_eq!(found.episodes[0].lead_s(), lead_s, "{warning:?}");
+            assert_eq!(found.episodes[0].is_announced(), announced, "{warning:?}");
         }
-        assert_eq!(run(&[(40.0, 60.0)], &[(5.0, 55.0)], None).answers, []);
+        assert_eq!(run(&[(40.0, 60.0)], &[(5.0, 55.0)], None).episodes, []);
     }
 
     #[test]

@@ -11,26 +11,26 @@ const MOST: usize = 64;
 
 /// Connections that have not sent the token yet, the oldest first.
 #[derive(Default)]
-pub(super) struct Strangers(Mutex<Waiting>);
+pub(super) struct UnauthenticatedConnections(Mutex<ConnectionQueue>);
 
 #[derive(Default)]
-struct Waiting {
+struct ConnectionQueue {
     count: u64,
     open: VecDeque<(u64, TcpStream)>,
 }
 
-impl Strangers {
+impl UnauthenticatedConnections {
     /// Adds a connection, and returns its number. If there are too many, the oldest is closed: a browser sends its request
     /// immediately.
     pub(super) fn admit(&self, stream: &TcpStream) -> u64 {
-        let mut waiting = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        waiting.count += 1;
-        let number = waiting.count;
+        let mut queue = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        queue.count += 1;
+        let number = queue.count;
         if let Ok(stream) = stream.try_clone() {
-            waiting.open.push_back((number, stream));
+            queue.open.push_back((number, stream));
         }
-        if waiting.open.len() > MOST
-            && let Some((_, oldest)) = waiting.open.pop_front()
+        if queue.open.len() > MOST
+            && let Some((_, oldest)) = queue.open.pop_front()
         {
             // This fails if the connection is closed already.
             let _ = oldest.shutdown(Shutdown::Both);
@@ -40,7 +40,7 @@ impl Strangers {
 
     /// Removes a connection that ended or sent the token.
     pub(super) fn forget(&self, number: u64) {
-        let mut waiting = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        waiting.open.retain(|(other, _)| *other != number);
+        let mut queue = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        queue.open.retain(|(other, _)| *other != number);
     }
 }

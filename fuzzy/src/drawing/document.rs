@@ -6,11 +6,11 @@ use super::{
     colour::{Colour, viridis},
     scale::Scale,
     slice::Slice,
-    text::{Escaped, cut, number, short, wrapped},
+    text::{EscapedText, cut, number, short, wrapped},
 };
 
 /// An SVG document under construction. Lengths are in pixels, relative to the upper left corner.
-pub struct Sheet {
+pub struct SvgDocument {
     width: f64,
     height: f64,
     /// Additional room above the upper edge, for headings with more than one line.
@@ -111,15 +111,15 @@ impl Frame {
     }
 }
 
-impl Sheet {
-    /// Creates an empty white sheet with the default styles.
-    pub fn new(width: f64, height: f64) -> Sheet {
-        Sheet::styled(width, height, STYLE)
+impl SvgDocument {
+    /// Creates an empty white document with the default styles.
+    pub fn new(width: f64, height: f64) -> SvgDocument {
+        SvgDocument::styled(width, height, STYLE)
     }
 
-    /// Creates an empty sheet with custom styles. `rect.paper` is its background.
-    pub fn styled(width: f64, height: f64, style: impl Into<String>) -> Sheet {
-        Sheet {
+    /// Creates an empty document with custom styles. `rect.paper` is its background.
+    pub fn styled(width: f64, height: f64, style: impl Into<String>) -> SvgDocument {
+        SvgDocument {
             width,
             height,
             above: 0.0,
@@ -128,11 +128,11 @@ impl Sheet {
         }
     }
 
-    pub(super) fn map() -> Sheet {
-        Sheet::new(WIDTH, HEIGHT)
+    pub(super) fn map() -> SvgDocument {
+        SvgDocument::new(WIDTH, HEIGHT)
     }
 
-    /// Adds markup verbatim. Text from the input must be escaped with [`Escaped`].
+    /// Adds markup verbatim. Text from the input must be escaped with [`EscapedText`].
     pub fn push(&mut self, markup: fmt::Arguments<'_>) {
         // Writing to a String cannot fail.
         let _ = self.body.write_fmt(markup);
@@ -144,7 +144,7 @@ impl Sheet {
         if text.is_empty() {
             return;
         }
-        let (x, y, text) = (px(x), px(y), Escaped(text));
+        let (x, y, text) = (px(x), px(y), EscapedText(text));
         self.push(format_args!(
             r#"<text x="{x}" y="{y}" text-anchor="{anchor}" class="{class}">{text}</text>"#
         ));
@@ -155,7 +155,7 @@ impl Sheet {
         if text.is_empty() {
             return;
         }
-        let (x, y, degrees, text) = (px(x), px(y), px(degrees), Escaped(text));
+        let (x, y, degrees, text) = (px(x), px(y), px(degrees), EscapedText(text));
         self.push(format_args!(
             r#"<text transform="translate({x} {y}) rotate({degrees})" text-anchor="middle" class="title">{text}</text>"#
         ));
@@ -195,7 +195,7 @@ impl Sheet {
         self.push(format_args!(r#"<{shape} points="{points}" {paint}/>"#));
     }
 
-    /// Adds a heading at `left`, and further lines below it. If they are long, the sheet grows upwards.
+    /// Adds a heading at `left`, and further lines below it. If they are long, the document grows upwards.
     pub fn heading(&mut self, left: f64, text: &str, more: &str) {
         let room = self.width - left - 8.0;
         let mut lines = vec![("heading", cut(text, (room / HEADING_WIDTH) as usize))];
@@ -292,7 +292,7 @@ impl Sheet {
             self.text((right + 7.0, y + 4.0), Anchor::Start, "label", &short(tick));
         }
         let title = cut(&slice.output_title(), 18);
-        // A long title is aligned with the right edge of the sheet instead of the bar.
+        // A long title is aligned with the right edge of the document instead of the bar.
         let (x, anchor) = match title.chars().count() {
             0..15 => (bar.left, Anchor::Start),
             _ => (WIDTH - 8.0, Anchor::End),
@@ -335,14 +335,14 @@ impl Sheet {
 
     /// Returns the finished document. The title is read by screen readers and shown by browsers.
     pub fn finish(self, title: &str) -> String {
-        let Sheet {
+        let SvgDocument {
             width,
             style,
             body,
             above,
             ..
         } = self;
-        let (height, title) = (self.height + above, Escaped(title));
+        let (height, title) = (self.height + above, EscapedText(title));
         format!(
             r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 {top} {width} {height}" width="{width}" height="{height}" role="img" aria-label="{title}">
 <title>{title}</title>

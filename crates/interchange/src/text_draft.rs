@@ -8,21 +8,21 @@ use fuzzy::{
 };
 
 use crate::{
-    Format, Losses, Written,
+    Format, Losses, WriteResult,
     words::{self, Words, is_printable},
 };
 
 /// A text that is being written.
-pub(crate) struct Paper {
+pub(crate) struct TextDraft {
     pub(crate) text: String,
     format: Format,
     losses: Losses,
     findings: Vec<Diagnostic>,
 }
 
-impl Paper {
+impl TextDraft {
     pub(crate) fn new(format: Format, losses: Losses, model: &Model) -> Self {
-        let mut paper = Paper {
+        let mut draft = TextDraft {
             text: String::new(),
             format,
             losses,
@@ -34,9 +34,9 @@ impl Paper {
                 model.least_strength
             );
             let help = format!("{} has no `least_strength`", format.name());
-            paper.loss("least-strength", message, &help);
+            draft.loss("least-strength", message, &help);
         }
-        paper
+        draft
     }
 
     /// The coefficient of each input for a term that is a linear function.
@@ -118,7 +118,7 @@ impl Paper {
         ]
     }
 
-    pub(crate) fn finish(self) -> Result<Written, Findings> {
+    pub(crate) fn finish(self) -> Result<WriteResult, Findings> {
         // A finding about several outputs is reported once.
         let mut told: Vec<Diagnostic> = vec![];
         for finding in self.findings {
@@ -129,7 +129,7 @@ impl Paper {
         let findings = Findings(told);
         match findings.has_errors() {
             true => Err(findings),
-            false => Ok(Written {
+            false => Ok(WriteResult {
                 text: self.text,
                 findings,
             }),

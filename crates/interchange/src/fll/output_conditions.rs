@@ -8,13 +8,13 @@ use fuzzy::{
     rule::{Condition, DEEPEST_NESTING, Hedge, Proposition},
 };
 
-use crate::draft::Draft;
+use crate::model_draft::ModelDraft;
 
 /// The maximum number of propositions that replace conditions on outputs: a rule may repeat what earlier rules repeat.
 const MOST_PROPOSITIONS: usize = 100_000;
 
-pub(crate) fn replace(draft: &mut Draft<'_>) {
-    let concluding = concluding(&draft.model);
+pub(crate) fn replace(draft: &mut ModelDraft<'_>) {
+    let concluding_rules = concluding_rules(&draft.model);
     let outputs = draft.model.outputs.iter();
     let outputs: BTreeSet<String> = outputs.map(|output| output.variable.name.clone()).collect();
     let mut room = MOST_PROPOSITIONS;
@@ -26,17 +26,17 @@ pub(crate) fn replace(draft: &mut Draft<'_>) {
             continue;
         }
         let mut condition = rule.rule.condition.clone();
-        let mut handover = Handover {
+        let mut replacement = OutputReplacement {
             model: &draft.model,
-            concluding: &concluding,
+            concluding_rules: &concluding_rules,
             outputs: &outputs,
             rule: index,
             room,
             problems: vec![],
         };
-        let resolved = handover.resolve(&mut condition);
-        room = handover.room;
-        let problems = handover.problems;
+        let resolved = replacement.resolve(&mut condition);
+        room = replacement.room;
+        let problems = replacement.problems;
         let span = draft.spans.rules.get(index).map(|rule| rule.whole.clone());
         let part = draft.text.get(span.unwrap_or_default()).unwrap_or_default();
         if resolved.is_none() || depth(&condition) > 2 * DEEPEST_NESTING {
@@ -65,20 +65,20 @@ pub(crate) fn replace(draft: &mut Draft<'_>) {
 }
 
 /// The rules that conclude each term of each output, in their order.
-type Concluding = BTreeMap<(String, String), Vec<usize>>;
+type ConcludingRules = BTreeMap<(String, String), Vec<usize>>;
 
-fn concluding(model: &Model) -> Concluding {
-    let mut concluding = Concluding::new();
+fn concluding_rules(model: &Model) -> ConcludingRules {
+    let mut concluding_rules = ConcludingRules::new();
     for (index, rule) in model.rules.iter().enumerate() {
         for consequent in &rule.rule.consequents {
             let key = (consequent.output.text.clone(), consequent.term.text.clone());
-            let rules = concluding.entry(key).or_default();
+            let rules = concluding_rules.entry(key).or_default();
             if rules.last() != Some(&index) {
                 rules.push(index);
             }
         }
     }
-    concluding
+    concluding_rules
 }
 
 fn mentions(condition: &Condition, outputs: &BTreeSet<String>) -> bool {
@@ -104,9 +104,9 @@ fn depth(condition: &Condition) -> usize {
 }
 
 /// The replacement in the condition of one rule.
-struct Handover<'m> {
+struct OutputReplacement<'m> {
     model: &'m Model,
-    concluding: &'m Concluding,
+    concluding_rules: &'m ConcludingRules,
     outputs: &'m BTreeSet<String>,
     rule: usize,
     /// The number of propositions that may still be added.
@@ -114,7 +114,7 @@ struct Handover<'m> {
     problems: Vec<String>,
 }
 
-impl Handover<'_> {
+impl OutputReplacement<'_> {
     /// Replaces the propositions about outputs; `None` if there would be too many.
     fn resolve(&mut self, condition: &mut Condition) -> Option<()> {
         match condition {
@@ -137,7 +137,10 @@ impl Handover<'_> {
     fn concluded(&mut self, proposition: &Proposition, term: &str) -> Option<Condition> {
         let (model, name) = (self.model, &proposition.variable.text);
         let key = (name.clone(), term.to_owned());
-        let all = self.concluding.get(&key).map_or(&[][..], Vec::as_slice);
+        let all = self
+            .concluding_rules
+            .get(&key)
+            .map_or(&[][..], Vec::as_slice);
         let before = all.partition_point(|&index| index < self.rule);
         if before < all.len() {
             self.problems

@@ -23,7 +23,7 @@ pub(crate) const MOST_TERMS: usize = 1000;
 pub(crate) const MOST_BLOCKS: usize = 1000;
 
 /// A model that is being read from a text.
-pub(crate) struct Draft<'t> {
+pub(crate) struct ModelDraft<'t> {
     pub(crate) text: &'t str,
     losses: Losses,
     pub(crate) model: Model,
@@ -31,9 +31,9 @@ pub(crate) struct Draft<'t> {
     findings: Vec<Diagnostic>,
 }
 
-impl<'t> Draft<'t> {
+impl<'t> ModelDraft<'t> {
     pub(crate) fn new(text: &'t str, losses: Losses) -> Self {
-        Draft {
+        ModelDraft {
             text,
             losses,
             model: Model::builder("").build(),

@@ -17,7 +17,7 @@ const CHUNK: usize = 4096;
 const MOST_HARD: usize = 64;
 
 /// Points, and the outputs of the original there.
-pub(crate) struct Judge {
+pub(crate) struct ReferenceOutputs {
     /// The names of the inputs, one for each column.
     names: Vec<String>,
     columns: Vec<Vec<f64>>,
@@ -32,17 +32,17 @@ pub(crate) struct Judge {
     hard: Vec<usize>,
 }
 
-impl Judge {
+impl ReferenceOutputs {
     pub(crate) fn new(
         model: &Model,
         columns: Vec<Vec<f64>>,
         tolerance: Option<f64>,
-    ) -> Result<Judge, SimplifyError> {
+    ) -> Result<ReferenceOutputs, SimplifyError> {
         let outputs = || model.outputs.iter().map(|output| &output.variable);
         let equal = |output: &Variable| super::EQUAL * (output.high - output.low);
         let equal: Vec<f64> = outputs().map(equal).collect();
         let slices: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
-        Ok(Judge {
+        Ok(ReferenceOutputs {
             outcomes: Engine::new(model)?.evaluate_batch(&slices)?,
             names: model
                 .inputs
