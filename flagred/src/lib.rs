@@ -61,6 +61,8 @@ extern crate alloc;
 
 pub mod accumulator;
 mod average;
+#[cfg(feature = "std")]
+mod batches;
 pub mod board;
 mod cause;
 #[doc(hidden)] // Its data is part of exported plans and of the memory that `board` borrows.

@@ -1,0 +1,199 @@
+//! The uncertainty of the statistic of an input, from the samples that its window contains.
+
+use alloc::vec::Vec;
+
+use fuzzy::engine::Interval;
+
+use super::{Channel, ChannelState, Input, Statistic, value};
+use crate::{
+    batches::{BatchMean, slope_half_width},
+    moments::Moments,
+};
+
+/// The two-sided interval of 95 % of the statistic of an input, for a signal whose character does not change within the
+/// window; docs/profiles.md defines it. `None` if no value is known, and for an exponential window, which does not keep
+/// its values.
+pub(crate) fn interval(
+    (channels, inputs): (&[Channel], &[Input]),
+    seen: &[ChannelState],
+    input: usize,
+) -> Option<Interval> {
+    let known = value((channels, inputs), seen, input)?;
+    let Input {
+        channel, statistic, ..
+    } = *inputs.get(input)?;
+    let ChannelState { window, bin, .. } = seen.get(channel)?;
+    if channels.get(channel)?.exponential {
+        return None;
+    }
+    let mut parts: Vec<(f64, Moments)> = window.parts().collect();
+    if statistic.is_of_bins() {
+        parts.push((0.0, bin.moments()));
+    }
+    // The mean of a quantity whose sum over a part, times its weight, is given.
+    let mean = |sum: &dyn Fn(&Moments) -> f64| {
+        let parts = parts.iter();
+        BatchMean::of(parts.map(|(_, part)| (part.weight(), sum(part))))
+    };
+    let of_mean = || mean(&Moments::sum);
+    let root = |square: BatchMean| {
+        let end = |square: f64| libm::sqrt(square.max(0.0));
+        let half = square.half_width();
+        Interval::new(end(square.mean - half), end(square.mean + half))
+    };
+    let around = |half: f64| Interval::around(known.value, half);
+    let found = match statistic {
+        Statistic::Min | Statistic::Max | Statistic::Last => around(0.0),
+        Statistic::Mean => around(of_mean()?.half_width()),
+        Statistic::ShareBelow(_) | Statistic::ShareAbove(_) => {
+            of_mean()?.share(known.value, window.samples())
+        }
+        Statistic::Std => {
+            let about = of_mean()?.mean;
+            root(mean(&|part| part.squares_about(about))?)
+        }
+        Statistic::Rms => root(mean(&|part| part.squares_about(0.0))?),
+        Statistic::Noise => root(mean(&|part| part.steps() / 2.0)?),
+        Statistic::StdLessNoise => {
+            let about = of_mean()?.mean;
+            root(mean(&|part| {
+                part.squares_about(about) - part.steps() / 2.0
+            })?)
+        }
+        Statistic::Rate => {
+            let parts = parts.iter().filter_map(|(t_s, part)| {
+                let weight = part.weight();
+                part.mean().map(|mean| (weight, *t_s, mean))
+            });
+            around(slope_half_width(&parts.collect::<Vec<_>>()))
+        }
+        Statistic::Percentile(percent) => {
+            // Woodruff 1952: the percentiles at the ends of the interval of the share below.
+            let below = mean(&|part| match part.mean() {
+                Some(value) if value < known.value => part.weight(),
+                _ => 0.0,
+            })?;
+            let count = u32::try_from(parts.len()).unwrap_or(u32::MAX);
+            let share = below.share(percent / 100.0, count);
+            let at = |share: f64| window.percentile(100.0 * share);
+            Interval::new(at(share.low)?, at(share.high)?)
+        }
+    };
+    Some(Interval::new(
+        found.low.min(known.value),
+        found.high.max(known.value),
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        monitor::Craft,
+        source::{Motors, Observer, Signal, Source},
+    };
+
+    /// Pseudo-random numbers of a normal distribution with mean 0 and variance 1.
+    fn normal(seed: u64) -> impl FnMut() -> f64 {
+        let mut state = seed;
+        let mut uniform = move || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            ((state >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
+        };
+        move || {
+            let (radius, angle) = (uniform(), uniform());
+            libm::sqrt(-2.0 * libm::log(radius)) * libm::cos(core::f64::consts::TAU * angle)
+        }
+    }
+
+    /// The interval of a statistic of the last `window_s` seconds of a signal at 50 Hz.
+    fn of(statistic: Statistic, window_s: f64, mut signal: impl FnMut() -> f64) -> Interval {
+        let source = Source {
+            statistic,
+            motors: Motors::Pooled,
+            signal: Signal::named("wind_m_s"),
+            window_s,
+            exponential: false,
+        };
+        let craft = Craft::new(0).with_signals(&["wind_m_s"]);
+        let mut observer = Observer::new([&source], craft).unwrap();
+        for i in 1..=(window_s * 50.0) as u32 {
+            observer.push(f64::from(i) * 0.02, 0.02, &[], &[signal()]);
+        }
+        observer.interval(0).unwrap()
+    }
+
+    /// The share of 1,000 windows whose interval contains the true value, and the mean width.
+    fn coverage(
+        statistic: Statistic,
+        window_s: f64,
+        truth: f64,
+        signal: impl Fn(&mut dyn FnMut() -> f64, &mut f64) -> f64,
+    ) -> (f64, f64) {
+        let (mut inside, mut width) = (0, 0.0);
+        for seed in 1..=1000 {
+            let mut random = normal(seed * 7919);
+            let mut state = random();
+            let found = of(statistic, window_s, || signal(&mut random, &mut state));
+            inside += i32::from(found.contains(truth));
+            width += found.width() / 1000.0;
+        }
+        (f64::from(inside) / 1000.0, width)
+    }
+
+    #[test]
+    fn intervals_of_independent_samples_contain_the_truth_in_95_percent_of_all_windows() {
+        let independent = |random: &mut dyn FnMut() -> f64, _: &mut f64| 3.0 + random();
+        let root = 10.0_f64.sqrt();
+        let half = 0.158_655;
+        let rows = [
+            (Statistic::Mean, 3.0, 0.93..0.97),
+            (Statistic::Std, 1.0, 0.90..0.97),
+            (Statistic::Rms, root, 0.92..0.97),
+            (Statistic::ShareBelow(2.0), half, 0.94..0.99),
+            (Statistic::ShareAbove(4.0), half, 0.94..0.99),
+            (Statistic::Percentile(50.0), 3.0, 0.94..0.99),
+            (Statistic::Rate, 0.0, 0.93..0.97),
+        ];
+        for (statistic, truth, expected) in rows {
+            let (share, width) = coverage(statistic, 2.0, truth, independent);
+            eprintln!("{statistic:?} {share}");
+            assert!(expected.contains(&share), "{statistic:?}: {share}");
+            // Four times as many samples halve the width; the rate is also over four times the time.
+            let (_, longer) = coverage(statistic, 8.0, truth, independent);
+            let ratio = match statistic {
+                Statistic::Rate => 8.0,
+                _ => 2.0,
+            };
+            assert!(
+                (0.8..1.25).contains(&(width / longer / ratio)),
+                "{statistic:?}: {width} {longer}"
+            );
+        }
+    }
+
+    /// An autoregressive signal with a correlation of 0.9 between samples at 50 Hz: a time constant of 0.2 s.
+    #[test]
+    fn intervals_of_correlated_samples_are_wider() {
+        let correlated = |random: &mut dyn FnMut() -> f64, state: &mut f64| {
+            *state = 0.9 * *state + 0.19_f64.sqrt() * random();
+            3.0 + *state
+        };
+        let (in_2_s, _) = coverage(Statistic::Mean, 2.0, 3.0, correlated);
+        let (in_20_s, _) = coverage(Statistic::Mean, 20.0, 3.0, correlated);
+        assert!((0.80..0.92).contains(&in_2_s), "{in_2_s}");
+        assert!((0.91..0.97).contains(&in_20_s), "{in_20_s}");
+    }
+
+    #[test]
+    fn a_value_that_is_not_a_mean_has_no_width() {
+        let mut random = normal(5);
+        for statistic in [Statistic::Min, Statistic::Max, Statistic::Last] {
+            assert_eq!(of(statistic, 2.0, &mut random).width(), 0.0);
+        }
+        assert_eq!(of(Statistic::Mean, 2.0, || 0.25), Interval::from(0.25));
+        assert_eq!(of(Statistic::Std, 2.0, || 0.25), Interval::from(0.0));
+    }
+}
