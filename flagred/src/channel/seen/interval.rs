@@ -159,7 +159,6 @@ mod tests {
         ];
         for (statistic, truth, expected) in rows {
             let (share, width) = coverage(statistic, 2.0, truth, independent);
-            eprintln!("{statistic:?} {share}");
             assert!(expected.contains(&share), "{statistic:?}: {share}");
             // Four times as many samples halve the width; the rate is also over four times the time.
             let (_, longer) = coverage(statistic, 8.0, truth, independent);
