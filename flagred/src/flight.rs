@@ -94,6 +94,8 @@ pub struct Assessor {
     monitor: Monitor,
     /// The distance between steps in seconds; `None` keeps no steps.
     step_s: Option<f64>,
+    /// Whether steps have intervals of their risks.
+    has_intervals: bool,
     known_in_air_s: Option<f64>,
     flight: Flight,
     /// The number of findings that had ended before the latest sample.
@@ -160,10 +162,17 @@ impl Assessor {
         Ok(Assessor {
             monitor: Monitor::new(estimator, craft)?,
             step_s,
+            has_intervals: false,
             known_in_air_s: None,
             flight: Flight::new(),
             ended_before: 0,
         })
+    }
+
+    /// From now on computes the interval of the risk of each step, which takes longer than the rest of the assessment.
+    pub fn with_intervals(mut self) -> Assessor {
+        self.has_intervals = true;
+        self
     }
 
     /// The monitor that processes the samples.
@@ -273,7 +282,7 @@ impl Assessor {
             next_s if next_s > update.t_s => next_s,
             _ => update.t_s + step_s,
         };
-        let uncertain = update.risk.ok();
+        let uncertain = update.risk.ok().filter(|_| self.has_intervals);
         let uncertain = uncertain.and_then(|risk| UncertainRisk::of(&self.monitor, risk));
         flight.uncertain.push(uncertain);
         flight.steps.push(Step {
@@ -459,7 +468,7 @@ impl Flight {
 
     /// Computes the intervals of the steps' risks and of the findings' highest risks.
     fn bound_risks(&mut self, estimator: &Estimator) {
-        if self.uncertain.is_empty() {
+        if self.peaks.is_empty() && self.uncertain.iter().all(Option::is_none) {
             return;
         }
         let mut bounds = RiskBounds::new(estimator);

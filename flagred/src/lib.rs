@@ -61,8 +61,6 @@ extern crate alloc;
 
 pub mod accumulator;
 mod average;
-#[cfg(feature = "std")]
-mod batches;
 pub mod board;
 mod cause;
 #[doc(hidden)] // Its data is part of exported plans and of the memory that `board` borrows.
@@ -95,6 +93,8 @@ pub mod plan;
 #[cfg(feature = "std")]
 pub mod profile;
 pub mod sample;
+#[cfg(feature = "std")]
+mod sampling_error;
 #[cfg(feature = "std")]
 pub mod shipped;
 #[cfg(feature = "std")]

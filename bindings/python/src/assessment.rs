@@ -7,6 +7,7 @@ use arrow_schema::{Field, Schema};
 use flagred::{
     flight::{Assessment, RiskInterval, Step},
     loaded::Loaded,
+    log::{assess, assess_with_intervals},
     monitor::Estimate,
 };
 use flagred_flightlog::Flight;
@@ -48,7 +49,10 @@ impl AssessmentData {
         let (name, step_s) = (flight.name.clone(), self.step_s);
         let (flight, of) = (Arc::clone(flight.flight(py)?), Arc::clone(&self.loaded));
         let subject = interruptible(py, move || Subject {
-            assessed: flagred::log::assess(&flight, &of.estimator, step_s),
+            assessed: match step_s {
+                Some(step_s) => assess_with_intervals(&flight, &of.estimator, step_s),
+                None => assess(&flight, &of.estimator, None),
+            },
             name,
             flight,
         })?;

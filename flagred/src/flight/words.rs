@@ -97,7 +97,7 @@ impl Finding {
         format!(" The {}{of} reached {:.0} %.", self.measure, self.value_pct)
     }
 
-    /// Whether the interval of the highest risk contains the threshold, so that more data could change the level.
+    /// Whether the interval of the highest risk contains the threshold, so that more samples could change the level.
     pub fn is_uncertain(&self) -> bool {
         let interval = self.risk_interval.as_ref();
         interval.is_some_and(|interval| interval.low_pct < self.threshold_pct)
@@ -107,7 +107,7 @@ impl Finding {
     fn straddling(&self) -> String {
         match &self.risk_interval {
             Some(RiskInterval { low_pct, high_pct }) if self.is_uncertain() => format!(
-                " The threshold of {} % is within the interval of the risk, {low_pct:.0} to {high_pct:.0} %: more data could change this.",
+                " The threshold of {} % is within the interval of the risk, {low_pct:.0} to {high_pct:.0} %: more samples could change this.",
                 number(self.threshold_pct)
             ),
             _ => String::new(),

@@ -36,7 +36,8 @@ fn rising(rate_hz: f64, mut push: impl FnMut(&Sample<'_>)) {
 
 fn assessor(estimator: &Estimator) -> Assessor {
     let craft = Craft::new(4).with_signals(&["battery_remaining_pct"]);
-    Assessor::new(estimator, craft, Some(0.1)).unwrap()
+    let assessor = Assessor::new(estimator, craft, Some(0.1)).unwrap();
+    assessor.with_intervals()
 }
 
 fn assessed(estimator: &Estimator, rate_hz: f64) -> Assessment {
@@ -142,7 +143,7 @@ fn few_samples_have_wide_intervals() {
         widths[widths.len() / 2]
     };
     let (few, many) = (median(3.0), median(50.0));
-    assert!(few > 2.0 * many && many > 0.5, "{few} {many}");
+    assert!(few > 2.0 * many, "{few} {many}");
 }
 
 #[test]
@@ -190,7 +191,7 @@ fn a_finding_whose_interval_contains_its_threshold_tells_so() {
     let interval = finding.risk_interval.unwrap();
     assert!(interval.low_pct <= finding.value_pct && finding.value_pct <= interval.high_pct);
     for (low_pct, ends) in [
-        (finding.threshold_pct - 6.0, "more data could change this."),
+        (finding.threshold_pct - 6.0, "more samples could change this."),
         (finding.threshold_pct, " %."),
     ] {
         let finding = Finding {

@@ -305,7 +305,9 @@ impl Enclosure<'_> {
             let vertices = self.vertices.as_ref();
             let exact = vertices.and_then(|vertices| search.vertices(vertices, &whole));
             let exact = exact.unwrap_or_else(|| vec![None; count]);
-            search.corners(&whole);
+            if exact.iter().any(Option::is_none) {
+                search.corners(&whole);
+            }
             let known = exact.into_iter().enumerate();
             search.known = known
                 .map(|(output, exact)| match exact.map(|exact| exact.values) {
