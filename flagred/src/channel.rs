@@ -4,6 +4,8 @@
 mod code;
 mod seen;
 
+#[cfg(feature = "std")]
+pub(crate) use seen::interval;
 pub use seen::{ChannelState, Observation};
 pub(crate) use seen::{Now, assumed, note, push, restart, value};
 

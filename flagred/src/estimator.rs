@@ -5,7 +5,7 @@ use alloc::{string::String, sync::Arc, vec, vec::Vec};
 use fuzzy::{
     Engine, Model,
     diagnostic::Findings,
-    engine::{AntecedentProposition, EvaluateError, Outcome, Scratch},
+    engine::{AntecedentProposition, EvaluateError, Interval, Outcome, Scratch},
 };
 
 use crate::{
@@ -252,6 +252,16 @@ impl Estimator {
     /// The compiled rule set.
     pub fn engine(&self) -> &Engine {
         &self.0.engine
+    }
+
+    /// The index of the output that is the risk.
+    pub(crate) fn output(&self) -> usize {
+        self.0.output
+    }
+
+    /// The smallest and the largest value that fills gaps for inputs within intervals, in the order of the model.
+    pub(crate) fn filled_within(&self, inputs: &[Interval]) -> Option<Interval> {
+        self.0.filling.lend()?.within(inputs)
     }
 
     /// The indices of the inputs, as in [`Lookup::order`].

@@ -8,7 +8,7 @@ use crate::{
     monitor::{Craft, Monitor, MonitorError, Sample, Unknown, Update},
     motor::counted,
     profile::Profile,
-    verdict::{EndedFindings, Level},
+    verdict::{EndedFindings, Level, Measure},
 };
 
 mod assessment;
@@ -19,6 +19,10 @@ pub use finding::{Cause, Finding};
 
 mod loss;
 use loss::Losses;
+
+mod uncertainty;
+pub use uncertainty::RiskInterval;
+use uncertainty::{RiskBounds, UncertainPeak, UncertainRisk};
 
 mod verdict;
 pub use verdict::{Reason, Verdict};
@@ -46,6 +50,15 @@ const PENDING_S: f64 = 1e-4;
 
 /// The margin below which a motor counts as saturated.
 const SATURATED_MARGIN: f64 = 0.005;
+
+/// Drops every second element.
+fn every_other<T>(all: &mut Vec<T>) {
+    let mut index = 0;
+    all.retain(|_| {
+        index += 1;
+        index % 2 == 1
+    });
+}
 
 /// Whether two reasons differ only in their numbers.
 fn is_same(a: &Unknown, b: &Unknown) -> bool {
@@ -81,6 +94,8 @@ pub struct Assessor {
     monitor: Monitor,
     /// The distance between steps in seconds; `None` keeps no steps.
     step_s: Option<f64>,
+    /// Whether steps have intervals of their risks.
+    has_intervals: bool,
     known_in_air_s: Option<f64>,
     flight: Flight,
     /// The number of findings that had ended before the latest sample.
@@ -93,6 +108,10 @@ struct Flight {
     findings: Vec<Finding>,
     findings_left_out: u64,
     steps: Vec<Step>,
+    /// The risk of each step with the intervals of its inputs; `None` if it is unknown.
+    uncertain: Vec<Option<UncertainRisk>>,
+    /// The highest risks of the findings.
+    peaks: Vec<UncertainPeak>,
     next_step_s: f64,
     widened_step_s: Option<f64>,
     last: Option<Last>,
@@ -143,10 +162,17 @@ impl Assessor {
         Ok(Assessor {
             monitor: Monitor::new(estimator, craft)?,
             step_s,
+            has_intervals: false,
             known_in_air_s: None,
             flight: Flight::new(),
             ended_before: 0,
         })
+    }
+
+    /// From now on computes the interval of the risk of each step, which takes longer than the rest of the assessment.
+    pub fn with_intervals(mut self) -> Assessor {
+        self.has_intervals = true;
+        self
     }
 
     /// The monitor that processes the samples.
@@ -233,6 +259,7 @@ impl Assessor {
         flight.settle(f64::INFINITY);
         let known_in_air_s = self.known_in_air_s.take();
         self.ended_before = 0;
+        flight.bound_risks(self.monitor.estimator());
         flight.assessment(known_in_air_s, self.monitor.estimator().profile())
     }
 
@@ -240,6 +267,9 @@ impl Assessor {
         let (Some(step_s), flight) = (self.step_s, &mut self.flight) else {
             return;
         };
+        if let Ok(estimate) = update.risk {
+            UncertainPeak::keep(&mut flight.peaks, &self.monitor, estimate);
+        }
         if update.t_s < flight.next_step_s {
             return;
         }
@@ -252,9 +282,13 @@ impl Assessor {
             next_s if next_s > update.t_s => next_s,
             _ => update.t_s + step_s,
         };
+        let uncertain = update.risk.ok().filter(|_| self.has_intervals);
+        let uncertain = uncertain.and_then(|risk| UncertainRisk::of(&self.monitor, risk));
+        flight.uncertain.push(uncertain);
         flight.steps.push(Step {
             t_s: update.t_s,
             estimate: update.risk.ok(),
+            risk_interval: None,
             elevated_risk_pct: update.elevated_risk_pct,
             margin: self.monitor.margin(),
             spread: self.monitor.spread(),
@@ -270,6 +304,8 @@ impl Flight {
             findings: Vec::new(),
             findings_left_out: 0,
             steps: Vec::new(),
+            uncertain: Vec::new(),
+            peaks: Vec::new(),
             next_step_s: f64::NEG_INFINITY,
             widened_step_s: None,
             last: None,
@@ -395,11 +431,8 @@ impl Flight {
 
     /// Drops every other step, and doubles the distance between steps from now on.
     fn widen_steps(&mut self) {
-        let mut index = 0;
-        self.steps.retain(|_| {
-            index += 1;
-            index % 2 == 1
-        });
+        every_other(&mut self.steps);
+        every_other(&mut self.uncertain);
         let span_s = match (self.steps.first(), self.steps.last()) {
             (Some(first), Some(last)) => last.t_s - first.t_s,
             _ => 0.0,
@@ -430,6 +463,23 @@ impl Flight {
                 break;
             }
             step.judged = false;
+        }
+    }
+
+    /// Computes the intervals of the steps' risks and of the findings' highest risks.
+    fn bound_risks(&mut self, estimator: &Estimator) {
+        if self.peaks.is_empty() && self.uncertain.iter().all(Option::is_none) {
+            return;
+        }
+        let mut bounds = RiskBounds::new(estimator);
+        for (step, risk) in self.steps.iter_mut().zip(&self.uncertain) {
+            step.risk_interval = risk.as_ref().and_then(|risk| bounds.of(risk));
+        }
+        for finding in &mut self.findings {
+            if finding.measure == Measure::Risk && finding.risk_output.is_none() {
+                let risk = UncertainPeak::find(&self.peaks, finding.from_s);
+                finding.risk_interval = risk.and_then(|risk| bounds.of(risk));
+            }
         }
     }
 

@@ -292,6 +292,12 @@ impl Follower {
         self.alert.open().or_else(|| self.notices.open().copied())
     }
 
+    /// The open finding of the risk, with its values so far.
+    #[cfg(feature = "std")]
+    pub(crate) fn open_of_risk(&self) -> Option<Finding> {
+        self.alert.open()
+    }
+
     /// The worst open finding that is not about the risk, with its values so far: little reserve or an imbalance.
     #[cfg(feature = "std")]
     pub(crate) fn open_notice(&self) -> Option<Finding> {

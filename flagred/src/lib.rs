@@ -94,6 +94,8 @@ pub mod plan;
 pub mod profile;
 pub mod sample;
 #[cfg(feature = "std")]
+mod sampling_error;
+#[cfg(feature = "std")]
 pub mod shipped;
 #[cfg(feature = "std")]
 pub mod source;

@@ -25,6 +25,24 @@ use crate::{
 /// # Ok::<(), flagred_flightlog::ReadError>(())
 /// ```
 pub fn assess(flight: &Flight, estimator: &Estimator, step_s: Option<f64>) -> Assessment {
+    assess_by(flight, estimator, |craft| {
+        Assessor::new(estimator, craft, step_s)
+    })
+}
+
+/// As [`assess`], with the interval of the risk of each step ([`Assessor::with_intervals`]). For drawing and exporting
+/// steps; it takes longer.
+pub fn assess_with_intervals(flight: &Flight, estimator: &Estimator, step_s: f64) -> Assessment {
+    assess_by(flight, estimator, |craft| {
+        Ok(Assessor::new(estimator, craft, Some(step_s))?.with_intervals())
+    })
+}
+
+fn assess_by(
+    flight: &Flight,
+    estimator: &Estimator,
+    assessor: impl FnOnce(Craft<'_>) -> Result<Assessor, MonitorError>,
+) -> Assessment {
     let gaps = flight.gaps();
     let is_needed = |gap: &&Gap| !matches!(gap, Gap::NoAttitude | Gap::TooSlow { .. });
     let profile = estimator.profile();
@@ -47,7 +65,7 @@ pub fn assess(flight: &Flight, estimator: &Estimator, step_s: Option<f64>) -> As
     let missing = signals.iter().filter(|name| !carried.contains(name));
     let missing: Vec<&str> = missing.copied().collect();
     let craft = craft(flight, &signals).with_optional(&missing);
-    let mut assessor = match Assessor::new(estimator, craft, step_s) {
+    let mut assessor = match assessor(craft) {
         Ok(assessor) => assessor,
         Err(error) => return Assessment::not_available(error),
     };

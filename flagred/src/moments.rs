@@ -133,6 +133,25 @@ impl Moments {
         self.weight
     }
 
+    /// `sum(weight value)`.
+    #[cfg(feature = "std")]
+    pub(crate) fn sum(&self) -> f64 {
+        self.weight * self.mean
+    }
+
+    /// `sum(weight (value - origin)^2)`.
+    #[cfg(feature = "std")]
+    pub(crate) fn squares_about(&self, origin: f64) -> f64 {
+        let step = self.mean - origin;
+        self.squares + self.weight * step * step
+    }
+
+    /// `sum(weight (value - previous value)^2)`, where the previous value is known.
+    #[cfg(feature = "std")]
+    pub(crate) fn steps(&self) -> f64 {
+        self.steps
+    }
+
     /// The weighted mean; `None` without a value.
     pub(crate) fn mean(&self) -> Option<f64> {
         self.known(self.mean)

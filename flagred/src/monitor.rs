@@ -2,8 +2,10 @@
 
 use alloc::{format, string::String, vec, vec::Vec};
 
+use fuzzy::engine::Interval;
+
 use crate::{
-    channel::{Channel, ChannelState, Input, assumed, motors_needed, restart},
+    channel::{Channel, ChannelState, Input, assumed, interval, motors_needed, restart},
     estimator::{Estimator, Memory},
     follower::{Feed, FlightMemory, Follower, reading},
     motor::{Motor, set_geometry},
@@ -283,6 +285,51 @@ impl Monitor {
     /// The values of the inputs after the latest sample, in the order of the profile; NaN is unknown.
     pub fn inputs(&self) -> &[f64] {
         &self.room.inputs
+    }
+
+    /// The intervals of 95 % of the inputs after the latest sample, in the order of the profile. An assumed value, and an
+    /// input that the risk does not depend on, has no width. `None` if the interval of another input is unknown.
+    pub(crate) fn intervals(&self) -> Option<Vec<Interval>> {
+        let (plan, seen) = ((&self.channels[..], &self.inputs[..]), &self.room.seen);
+        let feed = Feed {
+            channels: &self.channels,
+            inputs: &self.inputs,
+            order: self.estimator.order(),
+        };
+        let is_measured =
+            |input: usize| feed.needs(input) && assumed(&self.inputs, seen, input).is_none();
+        let values = self.room.inputs.iter().enumerate();
+        let statistics = values.map(|(input, value)| match is_measured(input) {
+            true => interval(plan, seen, input),
+            false => Some(Interval::from(*value)),
+        });
+        let statistics = statistics.collect::<Option<Vec<Interval>>>()?;
+        let mut all = statistics.clone();
+        for (input, of) in self.inputs.iter().enumerate() {
+            let Some(ratio) = of.ratio.filter(|_| is_measured(input)) else {
+                continue;
+            };
+            let (Some(found), Some(divided), Some(per)) = (
+                all.get_mut(input),
+                statistics.get(input),
+                statistics.get(ratio.per),
+            ) else {
+                continue;
+            };
+            let divisors = [per.low, per.high].map(|per| per.max(ratio.at_least));
+            let ends = [divided.low, divided.high].map(|end| divisors.map(|by| end / by));
+            let ends = ends.into_iter().flatten();
+            let nothing = Interval::new(f64::INFINITY, f64::NEG_INFINITY);
+            *found = ends.fold(nothing, |found, end| {
+                Interval::new(found.low.min(end), found.high.max(end))
+            });
+        }
+        Some(all)
+    }
+
+    /// The open finding of the first risk, with its values so far.
+    pub(crate) fn open_of_risk(&self) -> Option<Finding> {
+        self.follower.open_of_risk()
     }
 
     /// The indices in the profile of the inputs whose values are assumed after the latest sample: inputs with

@@ -2,9 +2,13 @@
 
 use alloc::{string::String, vec, vec::Vec};
 
+use fuzzy::engine::Interval;
+
 pub use crate::channel::{Motors, Observation, Statistic};
 use crate::{
-    channel::{Channel, ChannelState, Input, Now, Observed, Threshold, push, restart, value},
+    channel::{
+        Channel, ChannelState, Input, Now, Observed, Threshold, interval, push, restart, value,
+    },
     craft::Craft,
     motor::{Bin, Motor, clear, set_geometry, take},
 };
@@ -239,6 +243,12 @@ impl Observer {
     /// The value of the source with this index; `None` if nothing is known.
     pub fn value(&self, input: usize) -> Option<Observation> {
         value((&self.channels, &self.inputs), &self.seen, input)
+    }
+
+    /// The two-sided interval of 95 % of the value of the source with this index, by its samples: docs/method.md defines
+    /// it. `None` if nothing is known, and for an exponential window.
+    pub fn interval(&self, input: usize) -> Option<Interval> {
+        interval((&self.channels, &self.inputs), &self.seen, input)
     }
 }
 

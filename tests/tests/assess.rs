@@ -51,6 +51,8 @@ fn the_shipped_flight_as_json() {
         "coverage",
         "filled",
         "risk",
+        "risk_low",
+        "risk_high",
         "elevated_risk",
     ] {
         assert!(!step[key].is_null(), "`{key}` of {step}");
@@ -63,7 +65,7 @@ fn csv_has_a_row_for_each_step_of_the_json() {
     let text = String::from_utf8(output.stdout).unwrap();
     let (head, rows) = text.split_once('\n').unwrap();
     assert!(
-        head.starts_with("t_s,margin,spread,coverage,filled,risk,elevated_risk"),
+        head.starts_with("t_s,margin,spread,coverage,filled,risk,risk_low,risk_high,elevated_risk"),
         "{head}"
     );
     let (_, document) = json(STEADY);
@@ -91,6 +93,12 @@ fn csv_has_a_row_for_each_step_of_the_json() {
         match (risk.parse::<f64>().ok(), step["risk"].as_f64()) {
             (Some(a), Some(b)) => assert!((a - b).abs() < 1e-12, "{row}"),
             (a, b) => assert_eq!(a, b, "{row}"),
+        }
+        let [low, high] = ["risk_low", "risk_high"].map(|end| step[end].as_f64());
+        assert!(low <= step["risk"].as_f64() && step["risk"].as_f64() <= high);
+        for (end, column) in [(low, 6), (high, 7)] {
+            let of_csv = row.split(',').nth(column).unwrap().parse::<f64>().ok();
+            assert_eq!(of_csv.is_some(), end.is_some(), "{row}");
         }
     }
 }

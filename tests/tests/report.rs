@@ -60,6 +60,22 @@ fn the_curves_have_the_values_of_the_json_document() {
         assert!((least - low).abs() <= 0.051, "{name}: {least} is not {low}");
         assert!((most - high).abs() <= 0.051, "{name}: {most} is not {high}");
     }
+    // The area behind the risk reaches from the lowest to the highest end of its intervals.
+    let steps = document["steps"].as_array().unwrap();
+    let ends = |name: &str| {
+        let known = steps.iter().filter_map(|step| step[name].as_f64());
+        known.fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(v), b.max(v)))
+    };
+    let (_, band) = html.split_once("<path class=\"band risk\" d=\"").unwrap();
+    let (band, _) = band.split_once('"').unwrap();
+    let drawn = band
+        .split(['M', 'L', 'Z'])
+        .filter(|point| !point.is_empty());
+    let drawn = drawn.map(|point| point.split_once(' ').unwrap().1.parse::<f64>().unwrap());
+    let (least, most) = drawn.fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(v), b.max(v)));
+    assert!((least - ends("risk_low").0).abs() <= 0.051, "{least}");
+    assert!((most - ends("risk_high").1).abs() <= 0.051, "{most}");
+    assert!(html.contains("<span class=\"key area risk\">interval of the risk</span>"));
     let start_s = document["steps"][0]["t_s"].as_f64().unwrap();
     assert!(html.contains("No threshold was reached"));
     assert!(

@@ -5,8 +5,9 @@ use std::sync::{Arc, OnceLock};
 use arrow_array::{ArrayRef, BooleanArray, Float64Array, Int32Array, RecordBatch};
 use arrow_schema::{Field, Schema};
 use flagred::{
-    flight::{Assessment, Step},
+    flight::{Assessment, RiskInterval, Step},
     loaded::Loaded,
+    log::{assess, assess_with_intervals},
     monitor::Estimate,
 };
 use flagred_flightlog::Flight;
@@ -48,7 +49,10 @@ impl AssessmentData {
         let (name, step_s) = (flight.name.clone(), self.step_s);
         let (flight, of) = (Arc::clone(flight.flight(py)?), Arc::clone(&self.loaded));
         let subject = interruptible(py, move || Subject {
-            assessed: flagred::log::assess(&flight, &of.estimator, step_s),
+            assessed: match step_s {
+                Some(step_s) => assess_with_intervals(&flight, &of.estimator, step_s),
+                None => assess(&flight, &of.estimator, None),
+            },
             name,
             flight,
         })?;
@@ -172,6 +176,7 @@ pub(crate) fn steps(assessed: &Assessment) -> PyResult<Table> {
         )
     };
     let of = |get: fn(Estimate) -> f64| number(&|step: &Step| step.estimate.map(get));
+    let end = |get: fn(RiskInterval) -> f64| number(&|step: &Step| step.risk_interval.map(get));
     let rules = steps.iter().map(|step| {
         let rule = step.estimate.and_then(|estimate| estimate.dominant_rule);
         rule.map(|rule| rule as i32 + 1)
@@ -185,6 +190,8 @@ pub(crate) fn steps(assessed: &Assessment) -> PyResult<Table> {
     let mut columns: Vec<(&str, &str, ArrayRef)> = vec![
         ("t_s", "s", Arc::new(times)),
         ("risk", "%", of(|estimate| estimate.risk_pct)),
+        ("risk_low", "%", end(|interval| interval.low_pct)),
+        ("risk_high", "%", end(|interval| interval.high_pct)),
         ("elevated_risk", "%", number(&|step| step.elevated_risk_pct)),
         ("coverage", "1", of(|estimate| estimate.coverage)),
         ("filled", "", Arc::new(filled.collect::<BooleanArray>())),

@@ -444,6 +444,10 @@ export interface Step {
   filled: boolean | null;
   /** The number of the rule with the largest firing strength, from 1; null if none fires. */
   dominant_rule: number | null;
+  /** The lower end of the interval of the risk in %, from the uncertainty of its inputs; null if it is unknown. */
+  risk_low: number | null;
+  /** The upper end of that interval in %. */
+  risk_high: number | null;
   /** The mean margin over all motors and the window of the profile. */
   margin: number | null;
   /** The standard deviation of the commands over all motors and the window of the profile. */

@@ -5,7 +5,7 @@ use std::{io::Write, path::PathBuf, sync::Arc};
 use clap::ValueEnum;
 use flagred::{
     flight::{Assessment, Verdict},
-    log::assess,
+    log::{assess, assess_with_intervals},
     verdict::Level,
 };
 use flagred_flightlog::{Flight, ReadError};
@@ -91,6 +91,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let html = files.optional(arguments.html.as_ref())?;
     let svg = files.optional(arguments.svg.as_ref())?;
     let reports = html.is_some() || svg.is_some();
+    let shows_steps = reports || arguments.json || arguments.csv;
     let mut options = flagred_report::options(estimator, reports);
     options.range = arguments.range.given()?;
     let mut subjects = Vec::new();
@@ -148,7 +149,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         "logs",
         |log| {
             let flight = flagred_flightlog::open(log, &options)?;
-            let assessed = assess(&flight, estimator, Some(arguments.step));
+            let assessed = match shows_steps {
+                true => assess_with_intervals(&flight, estimator, arguments.step),
+                false => assess(&flight, estimator, Some(arguments.step)),
+            };
             Ok((flight, assessed))
         },
         |log, read: Result<(Flight, Assessment), ReadError>| {

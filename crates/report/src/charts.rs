@@ -13,7 +13,7 @@ use fuzzy::{
 };
 
 use crate::{
-    curve::{Stretch, path},
+    curve::{Stretch, area, path},
     timeline::{Line, Mark, Panel, Phase, Size, Timeline},
 };
 
@@ -210,7 +210,15 @@ pub(crate) fn risk(
         Line::new("elevated", "elevated risk", elevated),
         Line::new("risk", "risk", risk),
     ];
+    let intervals = assessed.steps.iter().map(|step| {
+        let interval = step.risk_interval;
+        let ends = interval.map(|interval| (interval.low_pct, interval.high_pct));
+        (step.t_s, ends)
+    });
+    let band = area(intervals, stretch, gap_s, 1);
+    let band = Line::new("risk", "interval of the risk", band);
     Some(Panel {
+        band: Some(band).filter(|band| !band.data.is_empty()),
         marks: marks.into_iter().flatten().collect(),
         ..Panel::new("Risk", PERCENT, Size::Large, lines)
     })

@@ -117,6 +117,62 @@ pub(crate) fn thinned(
     pen.data
 }
 
+/// The data of an SVG path around the area between the lower and the upper values of `points` (time in seconds, both
+/// values or `None`), in the units of [`path`]. Many points are thinned: each span has its smallest and largest value.
+pub(crate) fn area(
+    points: impl Iterator<Item = (f64, Option<(f64, f64)>)>,
+    stretch: Stretch,
+    gap_s: f64,
+    decimals: usize,
+) -> String {
+    let span_s = stretch.length_s() / SPANS as f64;
+    // Parts without a gap; each span has its first and last time, and its ends.
+    let mut parts: Vec<Vec<(usize, [f64; 2], [f64; 2])>> = Vec::new();
+    let mut last_s = f64::NEG_INFINITY;
+    for (t_s, values) in points.filter(|(t_s, _)| stretch.contains(*t_s)) {
+        let Some((low, high)) = values else {
+            last_s = f64::NEG_INFINITY;
+            continue;
+        };
+        let x = t_s - stretch.start_s;
+        if t_s - last_s > gap_s {
+            parts.push(Vec::new());
+        }
+        last_s = t_s;
+        let index = (x / span_s) as usize;
+        let Some(part) = parts.last_mut() else {
+            continue;
+        };
+        match part.last_mut().filter(|span| span.0 == index) {
+            Some((_, times, ends)) => {
+                *times = [times[0], x];
+                *ends = [ends[0].min(low), ends[1].max(high)];
+            }
+            None => part.push((index, [x, x], [low, high])),
+        }
+    }
+    let across = if stretch.length_s() < FEW_S { 4 } else { 2 };
+    let mut data = String::new();
+    for part in parts {
+        let upper = part
+            .iter()
+            .flat_map(|(_, times, ends)| times.map(|x| (x, ends[1])));
+        let lower = part
+            .iter()
+            .flat_map(|(_, times, ends)| times.map(|x| (x, ends[0])));
+        let lower: Vec<(f64, f64)> = lower.collect();
+        let around = upper.chain(lower.into_iter().rev());
+        for (i, (x, y)) in around.enumerate() {
+            data.push(if i == 0 { 'M' } else { 'L' });
+            data += &number(x, across);
+            data.push(' ');
+            data += &number(y, decimals);
+        }
+        data.push('Z');
+    }
+    data
+}
+
 #[derive(Default)]
 struct Span {
     index: usize,
@@ -292,6 +348,22 @@ mod tests {
         let end_s = 11.5;
         let short = Stretch { end_s, ..STRETCH };
         assert_eq!(path(points(), short, 2.0, 1), "M0 1h0L0.0025 2");
+    }
+
+    #[test]
+    fn an_area_goes_around_its_values_and_breaks_where_they_are_unknown() {
+        let points = [
+            (10.0, Some((1.0, 4.0))),
+            (10.1, Some((2.0, 5.0))),
+            (11.0, Some((2.0, 3.0))),
+            (12.0, None),
+            (13.0, Some((3.0, 3.5))),
+        ];
+        let data = area(points.into_iter(), STRETCH, 2.0, 1);
+        assert_eq!(
+            data,
+            "M0 5L0.1 5L1 3L1 3L1 2L1 2L0.1 1L0 1ZM3 3.5L3 3.5L3 3L3 3Z"
+        );
     }
 
     #[test]

@@ -28,6 +28,11 @@ fn row(estimator: &Estimator, step: &Step) -> Vec<(String, String)> {
         ("coverage", number(estimate.map(|e| e.coverage))),
         ("filled", filled.unwrap_or_default()),
         ("risk", number(estimate.map(|e| e.risk_pct))),
+        ("risk_low", number(step.risk_interval.map(|it| it.low_pct))),
+        (
+            "risk_high",
+            number(step.risk_interval.map(|it| it.high_pct)),
+        ),
         ("elevated_risk", number(step.elevated_risk_pct)),
     ]
     .map(|(name, field)| (name.to_owned(), field))

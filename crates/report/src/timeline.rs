@@ -71,6 +71,8 @@ pub(crate) struct Panel {
     pub(crate) size: Size,
     /// The curves.
     pub(crate) lines: Vec<Line>,
+    /// The area behind the curves, with data from [`area`](crate::curve::area).
+    pub(crate) band: Option<Line>,
     /// Values that are marked over the whole time.
     pub(crate) marks: Vec<Mark>,
     /// Shaded ranges of values.
@@ -119,6 +121,7 @@ impl Panel {
             scale,
             size,
             lines,
+            band: None,
             marks: Vec::new(),
             zones: Vec::new(),
         }
@@ -195,6 +198,13 @@ impl Panel {
                 rectangle(class, from, to, high - strip, high);
             }
         }
+        if let Some(band) = &self.band {
+            let _ = write!(
+                svg,
+                r#"<path class="band {}" d="{}"/>"#,
+                band.class, band.data
+            );
+        }
         let levels = self.ticks().into_iter().map(|value| (value, "grid"));
         let marks = self.marks.iter().map(|mark| (mark.value, mark.class));
         for (value, class) in levels.chain(marks) {
@@ -269,7 +279,7 @@ impl Panel {
             }
         }
         let mut x = left;
-        for line in &self.lines {
+        for line in self.lines.iter().chain(&self.band) {
             text(&format!("key {}", line.class), x, top - 8.0, &line.name);
             x += length(&line.name) + 24.0;
         }

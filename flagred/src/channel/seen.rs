@@ -9,6 +9,11 @@ use crate::{
     window::Window,
 };
 
+#[cfg(feature = "std")]
+mod interval;
+#[cfg(feature = "std")]
+pub(crate) use interval::interval;
+
 /// The observations of one channel.
 #[derive(Debug, Clone)]
 pub struct ChannelState {

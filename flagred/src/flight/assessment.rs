@@ -2,7 +2,7 @@
 
 use alloc::{string::String, vec::Vec};
 
-use super::{Finding, Reason, Verdict};
+use super::{Finding, Reason, RiskInterval, Verdict};
 use crate::{monitor::Estimate, profile::Profile};
 
 /// The assessment of a flight.
@@ -107,6 +107,9 @@ pub struct Step {
     pub t_s: f64,
     /// The estimate of the risk; `None` if the risk is unknown.
     pub estimate: Option<Estimate>,
+    /// The interval of the risk from the uncertainty of its inputs; `None` if the risk or the uncertainty is unknown, and
+    /// without [`Assessor::with_intervals`](super::Assessor::with_intervals).
+    pub risk_interval: Option<RiskInterval>,
     /// The elevated risk in %.
     pub elevated_risk_pct: Option<f64>,
     /// The mean margin over all motors and the profile's window.

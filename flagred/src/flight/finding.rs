@@ -3,6 +3,7 @@
 use alloc::string::{String, ToString};
 use core::{fmt, ops::Deref};
 
+use super::RiskInterval;
 use crate::{estimator::Estimator, monitor::OfRisk, verdict};
 
 /// A finding of a flight, with its cause by name.
@@ -16,6 +17,10 @@ pub struct Finding {
     pub found: verdict::Finding,
     /// The cause of the risk; `None` if no rule raised it, as for a notice or an interpolated risk.
     pub cause: Option<Cause>,
+    /// The interval of the highest risk of the finding, from the uncertainty of its inputs. `None` if steps are not kept,
+    /// for other measures than the risk, for another risk of the profile, and if the uncertainty is unknown.
+    #[cfg_attr(feature = "serde", serde(flatten))]
+    pub risk_interval: Option<RiskInterval>,
     /// The output that is the risk, if it is one of [`Profile::other_risks`](crate::profile::Profile::other_risks).
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     #[cfg_attr(feature = "schema", schemars(with = "String"))]
@@ -45,6 +50,7 @@ impl Finding {
         Finding {
             found,
             cause,
+            risk_interval: None,
             risk_output: None,
         }
     }

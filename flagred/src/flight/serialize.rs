@@ -113,6 +113,8 @@ impl Step {
         NamedStep {
             t_s: self.t_s,
             risk: RiskFields::new(self.estimate, self.elevated_risk_pct),
+            risk_low: self.risk_interval.map(|interval| interval.low_pct),
+            risk_high: self.risk_interval.map(|interval| interval.high_pct),
             margin: self.margin,
             spread: self.spread,
             judged: self.judged,
@@ -149,6 +151,12 @@ pub struct NamedStep<'a> {
     t_s: f64,
     #[serde(flatten)]
     risk: RiskFields,
+    /// The lower end of the interval of the risk in %, from the uncertainty of its inputs; null if it is unknown.
+    #[cfg_attr(feature = "schema", schemars(range(min = 0, max = 100)))]
+    risk_low: Option<f64>,
+    /// The upper end of that interval in %.
+    #[cfg_attr(feature = "schema", schemars(range(min = 0, max = 100)))]
+    risk_high: Option<f64>,
     /// The mean margin over all motors and the window of the profile.
     margin: Option<f64>,
     /// The standard deviation of the commands over all motors and the window of the profile.

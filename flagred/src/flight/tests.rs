@@ -2,6 +2,7 @@ use super::*;
 use crate::{shipped, verdict::Measure};
 
 mod loss;
+mod uncertainty;
 mod words;
 
 /// Flies at 50 Hz. Each phase has its seconds, whether it is in the air, and the motors.

@@ -1,5 +1,8 @@
 //! The grid of knots and values that fills gaps of the rules.
 
+#[cfg(feature = "std")]
+use fuzzy::engine::Interval;
+
 /// Knots with their values. Values between knots are interpolated linearly along each input.
 #[derive(Debug, Clone, Copy)]
 pub struct FilledKnots<'a> {
@@ -38,6 +41,47 @@ impl FilledKnots<'_> {
         })
     }
 
+    /// The smallest and the largest value within intervals. Between knots the value is linear along each input, so both are
+    /// at a vertex of the grid of knots and ends. With very many vertices it is the range of all values. `None` if there
+    /// is another number of intervals.
+    #[cfg(feature = "std")]
+    pub(crate) fn within(&self, inputs: &[Interval]) -> Option<Interval> {
+        const MOST_VERTICES: usize = 4096;
+        let mut points = alloc::vec![alloc::vec::Vec::new()];
+        for (axis, interval) in inputs.iter().enumerate() {
+            let (start, end) = (self.starts.get(axis)?, self.starts.get(axis + 1)?);
+            let places = self.coordinates.get(*start as usize..*end as usize)?;
+            let inside = places.iter().copied();
+            let inside = inside.filter(|x| interval.low < *x && *x < interval.high);
+            let along = || {
+                [interval.low, interval.high]
+                    .into_iter()
+                    .chain(inside.clone())
+            };
+            let count = if interval.width() > 0.0 {
+                usize::MAX
+            } else {
+                1
+            };
+            points = points
+                .iter()
+                .flat_map(|point| {
+                    along()
+                        .take(count)
+                        .map(move |x| [&point[..], &[x]].concat())
+                })
+                .collect();
+            if points.len() > MOST_VERTICES {
+                return hull(self.values.iter().copied());
+            }
+        }
+        hull(
+            points
+                .iter()
+                .filter_map(|point| Some(self.read(point)?.value)),
+        )
+    }
+
     /// Whether there are coordinates along each input, and a value and a distance for each knot.
     pub(crate) fn is_whole(&self, inputs: usize) -> bool {
         let lengths = self.starts.windows(2).map(|pair| match pair {
@@ -53,6 +97,15 @@ impl FilledKnots<'_> {
             && self.values.len() == knots
             && self.distances.len() == knots
     }
+}
+
+/// The smallest interval that contains all values; `None` without any.
+#[cfg(feature = "std")]
+fn hull(values: impl Iterator<Item = f64>) -> Option<Interval> {
+    values.fold(None, |found: Option<Interval>, value| {
+        let Interval { low, high } = found.unwrap_or(Interval::from(value));
+        Some(Interval::new(low.min(value), high.max(value)))
+    })
 }
 
 /// Interpolates values at knots linearly along each axis; beyond the outermost knots the value is constant. `None` if

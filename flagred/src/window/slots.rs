@@ -1,6 +1,7 @@
 //! Statistics of the means of a window's slots: at most 130 values for any length of the window.
 
 use super::{SLOTS, Window};
+use crate::moments::Moments;
 
 /// The mean of the samples of a slot.
 #[derive(Debug, Clone, Copy)]
@@ -13,15 +14,24 @@ struct Mean {
 }
 
 impl Window {
-    fn means(&self) -> impl Iterator<Item = Mean> + Clone {
+    /// The moments of the samples of each slot, of the oldest one the part inside the window, and the middle of their
+    /// time in seconds relative to now.
+    pub(crate) fn parts(&self) -> impl Iterator<Item = (f64, Moments)> + Clone {
         let inside = self.inside_of_oldest();
-        (0..self.len).filter_map(move |i| {
-            let slot = self.slots[self.place(i)];
+        (0..self.len).map(move |i| {
+            let slot = &self.slots[self.place(i)];
             let share = if i == 0 { inside } else { 1.0 };
+            let t_s = (slot.start_s + slot.end_s) / 2.0 - self.now_s;
+            (t_s, slot.moments.scaled(share))
+        })
+    }
+
+    fn means(&self) -> impl Iterator<Item = Mean> + Clone {
+        self.parts().filter_map(|(t_s, part)| {
             Some(Mean {
-                t_s: (slot.start_s + slot.end_s) / 2.0 - self.now_s,
-                weight: slot.moments.weight() * share,
-                value: slot.moments.mean()?,
+                t_s,
+                weight: part.weight(),
+                value: part.mean()?,
             })
         })
     }
@@ -82,7 +92,6 @@ impl Window {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::moments::Moments;
 
     fn window(length_s: f64, rate_hz: f64, until_s: f64, value: impl Fn(f64) -> f64) -> Window {
         let mut window = Window::new(length_s);

@@ -168,6 +168,10 @@ class Finding(NamedTuple):
     threshold_pct: float
     value_pct: float
     """The worst value of the measure in that time."""
+    risk_low: float | None
+    """The lower end of the interval of the highest risk in %; None if it is unknown or not computed."""
+    risk_high: float | None
+    """The upper end of that interval in %."""
     motor: MotorFinding | None
     cause: Cause | None
     risk_output: str | None
@@ -219,6 +223,8 @@ def finding(data: dict[str, Any]) -> Finding:
     return Finding(
         motor=MotorFinding(**motor) if motor else None,
         cause=Cause(**cause) if cause else None,
+        risk_low=data.pop("risk_low", None),
+        risk_high=data.pop("risk_high", None),
         risk_output=data.pop("risk_output", None),
         **data,
     )

@@ -346,8 +346,9 @@ class Assessment(AssessmentData):
 
     @cached_property
     def steps(self) -> Table:
-        """The risk over time, a row per step: ``t_s``, ``risk`` and ``elevated_risk`` in %, ``coverage``, ``filled``,
-        ``dominant_rule``, ``margin``, ``spread``, ``judged``, and ``input_NAME`` for each input of the profile."""
+        """The risk over time, a row per step: ``t_s``, ``risk`` in % with the ends of its interval ``risk_low`` and
+        ``risk_high``, ``elevated_risk`` in %, ``coverage``, ``filled``, ``dominant_rule``, ``margin``, ``spread``,
+        ``judged``, and ``input_NAME`` for each input of the profile."""
         return self._steps()
 
     def moment(self, t_s: float) -> dict[str, Any]:

@@ -78,7 +78,7 @@ impl Flight {
             subject: Rc::new(Subject {
                 name: self.name.clone(),
                 flight: Arc::clone(&self.flight),
-                assessed: flagred::log::assess(&self.flight, estimator, Some(STEP_S)),
+                assessed: flagred::log::assess_with_intervals(&self.flight, estimator, STEP_S),
             }),
             loaded: Rc::clone(&profile.loaded),
         }

@@ -21,6 +21,7 @@ fn finding(measure: Measure, value_pct: f64) -> Finding {
             ..verdict::Finding::NONE
         },
         cause: None,
+        risk_interval: None,
         risk_output: None,
     }
 }

@@ -35,6 +35,18 @@ impl RangedLiteral {
         }
     }
 
+    /// Returns the positions between which the degree is linear; `None` for a curved term, hedges, a step and an interval
+    /// type-2 term.
+    pub(super) fn corners(&self) -> Option<Vec<f64>> {
+        let term = self.term.as_ref()?;
+        let corners = term.membership_function.corners()?;
+        let mut positions: Vec<f64> = corners.into_iter().map(|(x, _)| x).collect();
+        let count = positions.len();
+        positions.dedup();
+        let is_linear = self.hedges.is_empty() && term.lower.is_none();
+        (is_linear && positions.len() == count).then_some(positions)
+    }
+
     /// Returns the smallest and the largest degree of the values in an interval.
     pub(super) fn degrees(&self, low: f64, high: f64) -> (f64, f64) {
         let bare = match &self.term {

@@ -11,6 +11,8 @@
 //! whereas `x IS low` and `x IS high` cannot both have a large degree. In smaller intervals the error is smaller. So the
 //! intervals of the inputs are divided, always where the bound of an output is farthest out, until the bound is close to
 //! a value that occurs, or [`MOST_BOXES`] is reached. Each step keeps the bounds valid.
+//!
+//! For many rule sets this is not needed, because the extremes are known to be at a few points: see `vertices.rs`.
 
 use alloc::{collections::BinaryHeap, sync::Arc, vec, vec::Vec};
 use core::cmp::Ordering;
@@ -18,10 +20,12 @@ use core::cmp::Ordering;
 use super::{Engine, EvaluateError, Outcome, Scratch};
 use crate::model::chain;
 use stage::{RangedScratch, RangedStage};
+use vertices::Vertices;
 
 mod degrees;
 mod formula;
 mod stage;
+mod vertices;
 
 /// The maximum number of parts of the inputs that are evaluated for each end of an output.
 const MOST_BOXES: usize = 400;
@@ -122,6 +126,7 @@ pub struct IntervalOutcome {
 pub struct Enclosure<'e> {
     engine: &'e Engine,
     stages: Vec<RangedStage>,
+    vertices: Option<Vertices>,
 }
 
 /// Bounds of the values of an output.
@@ -203,9 +208,11 @@ impl Engine {
     pub fn enclosure(&self) -> Enclosure<'_> {
         let (first, later) = chain::stages(&self.model);
         let stages = core::iter::once(&first).chain(&later);
+        let stages: Vec<RangedStage> = stages.map(RangedStage::new).collect();
         Enclosure {
             engine: self,
-            stages: stages.map(RangedStage::new).collect(),
+            vertices: stages.first().map(|first| Vertices::new(self, first)),
+            stages,
         }
     }
 
@@ -295,9 +302,21 @@ impl Enclosure<'_> {
             });
             search.known = known.collect();
         } else {
-            search.corners(&whole);
-            search.known = (0..count)
-                .map(|output| search.enclose(output, &whole))
+            let vertices = self.vertices.as_ref();
+            let exact = vertices.and_then(|vertices| search.vertices(vertices, &whole));
+            let exact = exact.unwrap_or_else(|| vec![None; count]);
+            if exact.iter().any(Option::is_none) {
+                search.corners(&whole);
+            }
+            let known = exact.into_iter().enumerate();
+            search.known = known
+                .map(|(output, exact)| match exact.map(|exact| exact.values) {
+                    Some(Some(values)) => OutputBounds {
+                        values: Some(search.rounded(output, values)),
+                        may_be_undefined: false,
+                    },
+                    _ => search.enclose(output, &whole),
+                })
                 .collect();
         }
         let mut outcomes = Vec::with_capacity(count);

@@ -15,7 +15,7 @@ use crate::model::{
     Output, chain,
 };
 use crate::table::operators::{larger, smaller};
-use crate::table::{AntecedentStep, Op};
+use crate::table::{Action, AntecedentStep, Op};
 
 /// The relative width of the band around the least firing strength in which a rule may fire or not, because of
 /// rounding.
@@ -135,6 +135,45 @@ impl RangedStage {
             least_strength: model.least_strength,
             strengths: first,
         }
+    }
+
+    /// Returns the indices in the model of the outputs of the stage.
+    pub(super) fn outputs(&self) -> &[usize] {
+        &self.outputs
+    }
+
+    /// Adds the corners of the terms that the rules of an output read, if between corners the firing strengths are linear
+    /// along each input and added for each term. Returns the largest sum of strengths that count as 0, relative to the
+    /// least weight of a rule.
+    pub(super) fn linear(&self, output: usize, corners: &mut [Vec<f64>]) -> Option<f64> {
+        let output = self.own.get(output)?;
+        let strengths = output.first..output.first + output.offsets.last()?;
+        let mut found = Vec::new();
+        let (mut count, mut least_weight) = (0_u32, 1.0_f64);
+        for rule in &self.rules {
+            let own = |action: &&Action| strengths.contains(&(action.strength as usize));
+            let actions: Vec<&Action> = rule.draft.actions.iter().filter(own).collect();
+            if actions.is_empty() || rule.draft.weight <= 0.0 {
+                continue;
+            }
+            let literals = rule.draft.literals.as_ref()?;
+            let is_product = rule.and == Conjunction::Product || literals.len() < 2;
+            let is_plain = rule.draft.hedges.is_empty() && rule.activation == Activation::General;
+            if !is_product || !is_plain || actions.iter().any(|action| action.sums == 0) {
+                return None;
+            }
+            for literal in literals {
+                let literal = self.literals.get(*literal as usize)?;
+                found.push((literal.input, literal.corners()?));
+            }
+            count += 1;
+            least_weight = least_weight.min(rule.draft.weight);
+        }
+        for (input, of_term) in found {
+            corners.get_mut(input)?.extend(of_term);
+        }
+        // Strengths below the least strength count as 0 both at a vertex and elsewhere.
+        Some(2.0 * f64::from(count) * self.least_strength / least_weight)
     }
 
     pub(super) fn scratch(&self) -> RangedScratch {

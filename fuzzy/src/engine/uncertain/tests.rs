@@ -94,6 +94,54 @@ fn invalid_intervals_are_errors() {
     ));
 }
 
+/// Votes that are products of terms of different inputs, as in many rule sets of this kind.
+#[test]
+fn votes_have_exact_bounds() {
+    let outputs = |defuzzifier: &str| {
+        format!(
+            "{{speed: {{range: [0, 8], {defuzzifier}, aggregation: sum}}, share: {{range: [0, 1], partition: [less, more]}}}}"
+        )
+    };
+    let centroid = outputs("terms: {slow: {triangle: [0, 1, 3]}, fast: {trapezoid: [2, 5, 6, 8]}}");
+    let average =
+        outputs("defuzzifier: weighted_average, terms: {slow: {constant: 1}, fast: {constant: 6}}");
+    let rules = "
+  - IF heat IS low AND damp IS wet THEN speed IS slow WITH 0.3
+  - IF heat IS high THEN speed IS fast
+  - IF heat IS low THEN speed IS slow WITH 0.8
+  - IF damp IS wet THEN speed IS fast WITH 0.6
+  - IF heat IS low THEN share IS less
+operators: {and: product, or: maximum, implication: product, aggregation: sum}";
+    for outputs in [centroid, average] {
+        let engine = engine(&outputs, rules);
+        for (heat, damp) in [
+            (Interval::new(0.0, 40.0), Interval::new(0.0, 1.0)),
+            (Interval::new(12.0, 31.0), Interval::new(0.4, 0.8)),
+            (Interval::new(25.0, 25.0), Interval::new(0.7, 0.8)),
+        ] {
+            let values = of(&engine, heat, damp).values.unwrap();
+            let mut inner: Option<Interval> = None;
+            for i in 0..=400 {
+                for j in 0..=400 {
+                    let part = |it: Interval, i: u32| it.low + it.width() * f64::from(i) / 400.0;
+                    let value = engine.evaluate(&[part(heat, i), part(damp, j)]).unwrap()[0];
+                    let value = Interval::from(value.value().unwrap());
+                    inner = Some(inner.map_or(value, |inner| inner.hull(value)));
+                }
+            }
+            let inner = inner.unwrap();
+            assert!(values.low <= inner.low && inner.high <= values.high);
+            assert!(
+                inner.low - values.low < 1e-3 && values.high - inner.high < 1e-3,
+                "{values:?} {inner:?}"
+            );
+        }
+        // Where no rule may fire, the vertices alone prove nothing.
+        let undefined = engine.evaluate_interval(&[Interval::new(0.0, 40.0), 0.0.into()]);
+        assert!(undefined.unwrap()[1].may_be_undefined);
+    }
+}
+
 #[test]
 fn every_defuzzifier_and_activation_method_encloses_its_values() {
     let fuzzy = |rest: &str| {

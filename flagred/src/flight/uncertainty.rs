@@ -1,0 +1,148 @@
+//! The interval of a risk, from the intervals of its inputs.
+
+use alloc::{vec, vec::Vec};
+
+use fuzzy::engine::{Enclosure, Interval};
+
+use crate::{
+    estimator::Estimator,
+    lookup::UNREAD,
+    monitor::{Estimate, Monitor},
+    verdict::{Level, Measure},
+};
+
+/// The values that a risk may have, because its inputs are computed from a limited number of samples. It contains the
+/// risk for all values of the inputs within their intervals of 95 %. docs/method.md defines it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct RiskInterval {
+    /// The lower end in %.
+    #[cfg_attr(feature = "serde", serde(rename = "risk_low"))]
+    #[cfg_attr(feature = "schema", schemars(range(min = 0, max = 100)))]
+    pub low_pct: f64,
+    /// The upper end in %.
+    #[cfg_attr(feature = "serde", serde(rename = "risk_high"))]
+    #[cfg_attr(feature = "schema", schemars(range(min = 0, max = 100)))]
+    pub high_pct: f64,
+}
+
+/// A known risk with the intervals of the inputs that it was computed from.
+#[derive(Debug, Clone)]
+pub(super) struct UncertainRisk {
+    estimate: Estimate,
+    /// In the order of the profile.
+    inputs: Vec<Interval>,
+}
+
+impl UncertainRisk {
+    /// The state after a sample; `None` if the uncertainty of an input is unknown.
+    pub(super) fn of(monitor: &Monitor, estimate: Estimate) -> Option<UncertainRisk> {
+        let inputs = match estimate == Estimate::FALL {
+            true => Vec::new(),
+            false => monitor.intervals()?,
+        };
+        Some(UncertainRisk { estimate, inputs })
+    }
+
+    #[cfg(test)]
+    pub(super) fn inputs(&self) -> &[Interval] {
+        &self.inputs
+    }
+}
+
+/// The highest risk of a finding.
+#[derive(Debug, Clone)]
+pub(super) struct UncertainPeak {
+    /// The time at which the finding begins, in seconds.
+    from_s: f64,
+    severity: Level,
+    value_pct: f64,
+    risk: Option<UncertainRisk>,
+}
+
+impl UncertainPeak {
+    /// Keeps the state after a sample if the open finding of the risk has its highest risk then. `peaks` has one
+    /// element for each finding, the open one last.
+    pub(super) fn keep(peaks: &mut Vec<UncertainPeak>, monitor: &Monitor, estimate: Estimate) {
+        let open = monitor.open_of_risk();
+        let Some(open) = open
+            .filter(|open| open.measure == Measure::Risk && open.value_pct == estimate.risk_pct)
+        else {
+            return;
+        };
+        let last = peaks.last_mut().filter(|last| last.from_s == open.from_s);
+        // The highest value counts from the time at which the worst level was raised.
+        let is_known = |last: &&mut UncertainPeak| {
+            last.severity == open.severity && last.value_pct >= open.value_pct
+        };
+        if last.as_ref().is_some_and(is_known) {
+            return;
+        }
+        let peak = UncertainPeak {
+            from_s: open.from_s,
+            severity: open.severity,
+            value_pct: open.value_pct,
+            risk: UncertainRisk::of(monitor, estimate),
+        };
+        match last {
+            Some(last) => *last = peak,
+            None => peaks.push(peak),
+        }
+    }
+
+    /// The highest risk of the finding that begins at a time.
+    pub(super) fn find(peaks: &[UncertainPeak], from_s: f64) -> Option<&UncertainRisk> {
+        let peak = peaks.iter().find(|peak| peak.from_s == from_s)?;
+        peak.risk.as_ref()
+    }
+}
+
+/// Computes intervals of risks.
+pub(super) struct RiskBounds<'e> {
+    estimator: &'e Estimator,
+    enclosure: Enclosure<'e>,
+    /// The intervals of the inputs of the rule set.
+    point: Vec<Interval>,
+}
+
+impl<'e> RiskBounds<'e> {
+    pub(super) fn new(estimator: &'e Estimator) -> RiskBounds<'e> {
+        RiskBounds {
+            estimator,
+            enclosure: estimator.engine().enclosure(),
+            point: vec![Interval::from(0.0); estimator.model().inputs.len()],
+        }
+    }
+
+    /// The interval of a risk; where no rule applies, from the values that fill the gap.
+    pub(super) fn of(&mut self, risk: &UncertainRisk) -> Option<RiskInterval> {
+        let risk_pct = risk.estimate.risk_pct;
+        let mut values = Interval::from(risk_pct);
+        if !risk.inputs.is_empty() {
+            let variables = self.estimator.model().inputs.iter();
+            let places = variables.zip(self.estimator.order());
+            for (place, (variable, from)) in self.point.iter_mut().zip(places) {
+                let clamp = |end: f64| end.clamp(variable.low, variable.high);
+                *place = match *from {
+                    UNREAD => Interval::from(variable.low),
+                    from => {
+                        let Interval { low, high } = *risk.inputs.get(from as usize)?;
+                        Interval::new(clamp(low), clamp(high))
+                    }
+                };
+            }
+            let outcomes = self.enclosure.evaluate(&self.point).ok();
+            let output = self.estimator.output();
+            let of_rules = outcomes.and_then(|outcomes| outcomes.get(output)?.values);
+            let filled = self.estimator.filled_within(&self.point);
+            for other in of_rules.into_iter().chain(filled) {
+                values = Interval::new(values.low.min(other.low), values.high.max(other.high));
+            }
+        }
+        Some(RiskInterval {
+            low_pct: values.low.clamp(0.0, 100.0),
+            high_pct: values.high.clamp(0.0, 100.0),
+        })
+    }
+}
