@@ -285,7 +285,8 @@ impl core::error::Error for Findings {}
 
 /// Returns the candidate that an author who wrote `word` probably meant.
 ///
-/// The distance is the number of letters to insert, delete, replace or swap (optimal string alignment), ignoring case.
+/// The distance is the number of letters to insert, delete, replace or swap (optimal string alignment), ignoring the case of
+/// ASCII letters (the tables for all others are 20 kB in a browser).
 /// It must not exceed a third of the length of the longer word, or 1 for words of up to four letters. Among candidates with
 /// the same distance the first one is returned. Unless a candidate differs by one letter only, one that contains all parts
 /// of the word is preferred: `battery_remaining_pct` for `battery_pct`. If no candidate is near, one that starts with the
@@ -299,7 +300,7 @@ pub fn nearest<'a>(
     const LONGEST: usize = 64;
     let fold = |s: &str| {
         s.chars()
-            .flat_map(char::to_lowercase)
+            .map(|c| c.to_ascii_lowercase())
             .collect::<Vec<char>>()
     };
     let word = fold(word);

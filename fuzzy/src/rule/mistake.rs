@@ -257,13 +257,13 @@ fn is_missing(
                 Some(other) if other != last => {
                     format!(
                         "name the input: `{} {other} IS {name}`",
-                        joint.to_uppercase()
+                        joint.to_ascii_uppercase()
                     )
                 }
                 _ => {
                     format!(
                         "name the input again: `{} {last} IS {name}`",
-                        joint.to_uppercase()
+                        joint.to_ascii_uppercase()
                     )
                 }
             },

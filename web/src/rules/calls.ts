@@ -25,7 +25,7 @@ import {
   type Start,
   type View,
   type ViewedRules,
-} from 'flagred';
+} from 'flagred/rules';
 import type { Tell } from '../calls';
 
 interface Known {

@@ -130,10 +130,7 @@ fn a_term_gets_another_shape_at_the_same_place() {
     let text = after(&starter(), |d| set_shape(d, (1, 0), "gaussian")).unwrap();
     assert_eq!(
         text,
-        starter().replace(
-            "left_shoulder: [40, 60]",
-            "gaussian: {mean: 20, sd: 21}"
-        )
+        starter().replace("left_shoulder: [40, 60]", "gaussian: {mean: 20, sd: 21}")
     );
     for shape in SHAPES {
         let text = after(&starter(), |d| set_shape(d, (1, 1), shape)).unwrap();
