@@ -98,7 +98,7 @@ test('interval type-2 terms are shown, with their footprints and the interval of
   await page.getByLabel('Name of input food').waitFor();
   // Such terms can be renamed; their membership functions are edited as text.
   const bad = page.locator('.parts li').filter({ has: page.getByLabel('Name of term bad of food') });
-  assert.match(await bad.textContent(), /interval type-2, edited as text: upper left_shoulder: \[2, 6\], lower left_shoulder: \[1, 5\]/);
+  assert.match(await bad.textContent(), /interval type-2, edited as text: upper left_shoulder: \[2, 6\]; lower left_shoulder: \[1, 5\]/);
   assert.equal(await bad.locator('select').count(), 0);
   await page.getByLabel('Shape of term odd of food').waitFor();
   await enter(page, 'Name of term bad of food', 'awful');

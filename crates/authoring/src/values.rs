@@ -64,9 +64,10 @@ pub fn fields(document: &Document, variable: usize, term: usize) -> Option<TermF
         can_change_shape: false,
     };
     if let Some(lower) = &of.lower {
-        let [upper, lower] = [&of.membership_function, &lower.membership_function].map(shape_text);
+        let upper = with_height(&of.membership_function, of.height);
+        let lower = with_height(&lower.membership_function, lower.height);
         return Some(TermFields {
-            parameters: format!("upper {upper}, lower {lower}"),
+            parameters: format!("upper {upper}; lower {lower}"),
             ..fixed("interval type-2", None)
         });
     }
@@ -99,6 +100,14 @@ pub fn fields(document: &Document, variable: usize, term: usize) -> Option<TermF
         is_editable: true,
         can_change_shape: !is_number,
     })
+}
+
+/// Formats a membership function: `triangle: [0, 2, 4], height: 0.9`.
+fn with_height(shape: &MembershipFunction, height: f64) -> String {
+    match height == 1.0 {
+        true => shape_text(shape),
+        false => format!("{}, height: {}", shape_text(shape), written(height)),
+    }
 }
 
 /// Returns the edits that change the range of a variable.

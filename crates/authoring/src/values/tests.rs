@@ -7,7 +7,7 @@ inputs:
   food:
     range: [0, 10]
     terms:
-      bad: {upper: {left_shoulder: [2, 6]}, lower: {left_shoulder: [1, 5]}}
+      bad: {upper: {left_shoulder: [2, 6]}, lower: {left_shoulder: [1, 5], height: 0.5}}
       good: {triangle: [4, 8, 10], blur: 0.1}
       odd:
         gaussian: # bell-shaped
@@ -163,7 +163,7 @@ fn terms_that_only_the_text_changes_are_shown() {
     let bad = fields(&document, 0, 0).unwrap();
     assert_eq!(
         bad.parameters,
-        "upper left_shoulder: [2, 6], lower left_shoulder: [1, 5]"
+        "upper left_shoulder: [2, 6]; lower left_shoulder: [1, 5], height: 0.5"
     );
     for place in [(0, 0), (0, 1), (1, 1)] {
         assert!(!fields(&document, place.0, place.1).unwrap().is_editable);
