@@ -57,7 +57,7 @@ export function table(
     const id = `refusal-${messages++}`;
     box.setAttribute('aria-invalid', 'true');
     box.setAttribute('aria-describedby', id);
-    box.closest('li, .cell, th')!.append(h('p', { class: 'refusal', role: 'alert', id }, refusal));
+    box.closest('li, .cell')!.append(h('p', { class: 'refusal', role: 'alert', id }, refusal));
   }
 
   /** A box whose content can be edited. If the change is refused, the reason is shown and Escape restores the old content. */
@@ -110,7 +110,7 @@ export function table(
     return [select, numbers];
   }
 
-  function variableRow(variable: DrawnVariable, i: number, { at, terms }: Parts['variables'][number], shapes: string[]): HTMLElement {
+  function variableParts(variable: DrawnVariable, i: number, { at, terms }: Parts['variables'][number], shapes: string[]): HTMLElement {
     const { name, isOutput, low, high, unit } = variable;
     const kind = isOutput ? 'output' : 'input';
     const rows = terms.map((fields, t) => {
@@ -130,16 +130,20 @@ export function table(
     const units = sized(box(`Unit of ${name}`, unit ?? '', `unit-${i}`, (to) => changes.setUnit(i, to)), 4);
     units.placeholder = 'unit';
     return h(
-      'tr',
-      {},
+      'section',
+      { 'aria-label': `${kind} ${name}` },
       h(
-        'th',
-        { scope: 'row' },
-        h('div', { class: 'cell' }, sized(box(`Name of ${kind} ${name}`, name, `variable-${i}`, (to) => changes.rename(at, to)), Math.max(4, name.length)), h('span', { class: 'soft' }, kind)),
-        h('div', { class: 'cell' }, from, h('span', { class: 'soft' }, 'to'), to, units),
+        'div',
+        { class: 'cell' },
+        sized(box(`Name of ${kind} ${name}`, name, `variable-${i}`, (to) => changes.rename(at, to)), Math.max(4, name.length)),
+        h('span', { class: 'soft' }, kind),
+        from,
+        h('span', { class: 'soft' }, 'to'),
+        to,
+        units,
+        button('×', `Remove ${kind} ${name}`, `remove-${i}`, () => changes.removeNamed(i)),
       ),
-      h('td', {}, h('ul', {}, ...rows, h('li', {}, form(`Add a term to ${name}`, () => changes.addTerm(i, added.value.trim()), added, h('button', { class: 'small', title: `Add a term to ${name}` }, 'Add'))))),
-      h('td', {}, button('×', `Remove ${kind} ${name}`, `remove-${i}`, () => changes.removeNamed(i))),
+      h('ul', {}, ...rows, h('li', {}, form(`Add a term to ${name}`, () => changes.addTerm(i, added.value.trim()), added, h('button', { class: 'small', title: `Add a term to ${name}` }, 'Add')))),
     );
   }
 
@@ -198,7 +202,7 @@ export function table(
       fill(
         element,
         h('h2', {}, 'Variables and terms'),
-        h('table', {}, h('thead', {}, h('tr', {}, h('th', { scope: 'col' }, 'Variable'), h('th', { scope: 'col' }, 'Terms'), h('td', {}))), h('tbody', {}, ...variables.map((variable, i) => variableRow(variable, i, parts.variables[i]!, parts.shapes)))),
+        ...variables.map((variable, i) => variableParts(variable, i, parts.variables[i]!, parts.shapes)),
         newVariable(),
         h('h2', {}, 'Rules'),
         h(
