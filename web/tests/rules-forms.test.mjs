@@ -78,7 +78,7 @@ test('a wrong range, number or shape is marked at its box', async (t) => {
     ['Upper end of the range of humidity', '', 'the range needs two numbers, the smaller one first'],
     ['Peak of term mild of temperature', '35', 'the peak of `mild` must be between its neighbours'],
     ['Peak of term hot of temperature', 'warm', '`warm` is not a number'],
-    ['Parameters (top, foot) of term dry of humidity', '40', 'takes 2 numbers, not 1'],
+    ['Parameters (top, foot) of term dry of humidity', '40', 'the left_shoulder takes 2 numbers, not 1: top, foot'],
   ];
   for (const [label, value, message] of wrong) {
     await enter(page, label, value);
