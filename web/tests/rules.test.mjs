@@ -81,19 +81,6 @@ test('completions are offered, and a hover explains a name', async (t) => {
   await page.locator('.cm-hover', { hasText: 'How the guest rates the service' }).waitFor();
 });
 
-test('the text can be searched', async (t) => {
-  const { page } = await room(t, '?start=tipper');
-  await page.locator('.cm-content').focus();
-  await page.keyboard.press('Control+f');
-  await page.locator('.cm-search input[name="search"]').pressSequentially('rancid');
-  await page.keyboard.press('Enter');
-  await page.locator('.cm-searchMatch-selected').filter({ hasText: 'rancid' }).waitFor();
-  await page.keyboard.press('Escape');
-  await page.locator('.cm-search').waitFor({ state: 'detached' });
-  await page.keyboard.press('Control+f');
-  await page.locator('.cm-search').waitFor();
-});
-
 test('for every wrong rule set the message is shown, and the page continues', async (t) => {
   const { page } = await room(t);
   const folder = 'tests/authoring/err';

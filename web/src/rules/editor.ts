@@ -5,7 +5,8 @@ import { defaultKeymap, history, historyKeymap, isolateHistory, redo, redoDepth,
 import { yaml } from '@codemirror/lang-yaml';
 import { HighlightStyle, bracketMatching, indentOnInput, syntaxHighlighting } from '@codemirror/language';
 import { lintGutter, setDiagnostics, type Diagnostic as Mark } from '@codemirror/lint';
-import { EditorState, StateEffect, Transaction } from '@codemirror/state';
+import { highlightSelectionMatches, searchKeymap } from '@codemirror/search';
+import { EditorState, Transaction } from '@codemirror/state';
 import {
   EditorView,
   drawSelection,
@@ -135,19 +136,6 @@ export function editor(place: HTMLElement, text: string, readOnly: boolean, serv
     return true;
   }
 
-  let isSearchLoaded = false;
-  /** Opens the search. It is loaded with its first use. */
-  function find(view: EditorView): boolean {
-    // Its own keys come first from then on.
-    if (isSearchLoaded) return false;
-    isSearchLoaded = true;
-    void import('@codemirror/search').then(({ highlightSelectionMatches, openSearchPanel, searchKeymap }) => {
-      view.dispatch({ effects: StateEffect.appendConfig.of([keymap.of(searchKeymap), highlightSelectionMatches()]) });
-      openSearchPanel(view);
-    });
-    return true;
-  }
-
   const view = new EditorView({
     parent: root,
     root,
@@ -162,6 +150,7 @@ export function editor(place: HTMLElement, text: string, readOnly: boolean, serv
         drawSelection(),
         indentOnInput(),
         bracketMatching(),
+        highlightSelectionMatches(),
         EditorState.allowMultipleSelections.of(true),
         EditorState.readOnly.of(readOnly),
         EditorView.lineWrapping,
@@ -177,7 +166,7 @@ export function editor(place: HTMLElement, text: string, readOnly: boolean, serv
           { key: 'F2', preventDefault: true, run: () => (service.rename(), true) },
           { key: 'F12', preventDefault: true, run: toDefinition },
           ...completionKeymap,
-          { key: 'Mod-f', run: find },
+          ...searchKeymap,
           ...historyKeymap,
           ...defaultKeymap,
         ]),
