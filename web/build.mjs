@@ -22,7 +22,7 @@ const common = {
   loader: { '.gz': 'binary' },
   logLevel: 'warning',
   alias: Object.fromEntries(
-    [['flagred', 'index'], ['flagred/data', 'data']].map(([name, file]) => [name, fileURLToPath(new URL(`../target/web/package/${file}.js`, import.meta.url))]),
+    [['flagred', 'index'], ...rooms.map((room) => [`flagred/${room}`, room])].map(([name, file]) => [name, fileURLToPath(new URL(`../target/web/package/${file}.js`, import.meta.url))]),
   ),
 };
 

@@ -27,6 +27,10 @@ for (const [room, fill] of Object.entries(rooms)) {
     // What moves comes to rest.
     await page.waitForTimeout(1000);
     await page.screenshot({ path: join(folder, `page-${room}-${device}.png`) });
+    if (room === 'rules' && device === 'desktop') {
+      await page.getByRole('tab', { name: 'Table' }).click();
+      await page.locator('.parts').screenshot({ path: join(folder, 'page-rules-table.png') });
+    }
     if (complaints.length > 0) throw new Error(complaints.join('\n'));
     await context.close();
   }

@@ -537,7 +537,7 @@ fn motor_column(name: &str) -> Option<u32> {
 /// Returns the normalised spelling of a unit.
 fn normal(unit: &str) -> String {
     let unit = unit.trim().replace('°', "deg").replace('²', "2");
-    unit.to_lowercase()
+    unit.to_ascii_lowercase()
 }
 
 /// The minimum and maximum of the values of a source; `None` if it is unbounded.

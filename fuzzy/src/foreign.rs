@@ -154,7 +154,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
 fn folded(word: &str) -> String {
     word.chars()
         .filter(|c| !matches!(c, '_' | '-' | ' '))
-        .flat_map(char::to_lowercase)
+        .map(|c| c.to_ascii_lowercase())
         .collect()
 }
 

@@ -1,35 +1,49 @@
-/** Runs flagred in a worker, so that the page stays responsive. The first message is the compiled module of a room. */
+/**
+ * Runs flagred in a worker, so that the page stays responsive. The first message is the compiled module of a room, whose calls
+ * are then loaded.
+ */
 
-import { Panic, startFlight, startRules } from 'flagred';
-import { startData } from 'flagred/data';
 import type { Begin, Reply, Request, Tell } from './calls';
-import * as flight from './flight/calls';
-import * as rules from './rules/calls';
-import * as tables from './rules/datacalls';
 
 declare const self: DedicatedWorkerGlobalScope;
 
-const calls = new Map(
-  Object.entries({ ...flight, ...rules, ...tables }).map(([name, call]) => [name, call as (tell: Tell, ...args: unknown[]) => unknown]),
-);
-let started: Promise<void> | undefined;
+/** Starts the module of a room, and returns the calls to it. */
+const begin = {
+  async data(module: WebAssembly.Module) {
+    const [{ startData }, calls] = await Promise.all([import('flagred/data'), import('./rules/datacalls')]);
+    await startData(module);
+    return calls;
+  },
+  async flight(module: WebAssembly.Module) {
+    const [{ startFlight }, calls] = await Promise.all([import('flagred/flight'), import('./flight/calls')]);
+    await startFlight(module);
+    return calls;
+  },
+  async rules(module: WebAssembly.Module) {
+    const [{ startRules }, calls] = await Promise.all([import('flagred/rules'), import('./rules/calls')]);
+    await startRules(module);
+    return calls;
+  },
+};
+
+let started: Promise<object> | undefined;
 
 self.onmessage = async ({ data }: MessageEvent<Begin | Request>) => {
   if ('module' in data) {
-    started = { data: startData, flight: startFlight, rules: startRules }[data.room](data.module);
+    started = begin[data.room](data.module);
     return;
   }
   const { id, call, args } = data;
   const reply = (message: Reply, transfer: Transferable[] = []) => self.postMessage(message, transfer);
   try {
-    await started;
-    const run = calls.get(call);
+    const calls = new Map(Object.entries((await started) ?? {}));
+    const run = calls.get(call) as ((tell: Tell, ...args: unknown[]) => unknown) | undefined;
     if (!run) throw new Error(`\`${call}\` is not a call`);
     const answer = await run((progress, found) => reply({ id, progress, found }), ...args);
     reply({ id, answer }, columns(answer));
   } catch (error) {
     const words = error instanceof Error ? error.message : String(error);
-    reply(error instanceof Panic || error instanceof WebAssembly.RuntimeError ? { id, trapped: words } : { id, refused: words });
+    reply(error instanceof WebAssembly.RuntimeError || (error instanceof Error && error.name === 'Panic') ? { id, trapped: words } : { id, refused: words });
   }
 };
 

@@ -16,6 +16,9 @@ const states = [
     await rules(page);
     await page.getByRole('tab', { name: 'Table' }).click();
     await page.getByRole('button', { name: 'Add rule' }).waitFor();
+    await page.getByLabel('Peak of term mild of temperature').fill('warm');
+    await page.getByLabel('Peak of term mild of temperature').press('Enter');
+    await page.locator('.parts .refusal').waitFor();
   }],
   ['a rule set with rows of data', 'rules', async (page) => {
     await rules(page);

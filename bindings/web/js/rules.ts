@@ -75,6 +75,8 @@ export interface DrawnTerm {
   /** Its shape in the syntax of rule sets: `triangle: [0, 2, 4]`. */
   shape: string;
   curve: number[];
+  /** The lower curve of an interval type-2 term, whose upper one is `curve`; otherwise empty. */
+  lower: number[];
   handles: Handle[];
 }
 
@@ -91,11 +93,30 @@ export interface DrawnVariable {
   terms: DrawnTerm[];
 }
 
-/** Where the parts of a rule set are that can be renamed and removed. */
+/** A term as a form shows it. */
+export interface TermFields {
+  /** Where its name is. */
+  at: number;
+  /** Its shape, such as `triangle`; `peak` in a partition, and `limit` in `steps`. */
+  shape: string;
+  /** Its parameters without brackets: `0, 2, 4`. */
+  parameters: string;
+  /** The names of the parameters; empty for shapes without a fixed number of them. */
+  names: string[];
+  /** Whether {@link RuleText.setParameters} can change it. An interval type-2 term is edited as text. */
+  isEditable: boolean;
+  /** Whether {@link RuleText.setShape} can change it. */
+  canChangeShape: boolean;
+}
+
+/** The parts of a rule set that can be changed, renamed and removed. */
 export interface Parts {
-  variables: { at: number; terms: number[] }[];
+  /** The variables, inputs first; `at` is where the name is. */
+  variables: { at: number; terms: TermFields[] }[];
   /** The rules in words. */
   rules: string[];
+  /** The shapes that a term can get. */
+  shapes: string[];
 }
 
 /** A rule set or a profile as an editor shows it, whatever is wrong with it. Call {@link RuleText.free} when done. */
@@ -155,7 +176,7 @@ export class RuleText {
     return parsed(() => this.#text.drag(variable, term, handle, x, degree));
   }
 
-  /** Where the names of variables, inputs first, and of their terms are, and the rules; `null` of a profile. */
+  /** Returns the variables, terms and rules that can be changed; `null` for a profile. */
   parts(): Parts | null {
     return parsed(() => this.#text.parts());
   }
@@ -168,6 +189,26 @@ export class RuleText {
   /** The edits that add a term to a variable. */
   addTerm(variable: number, name: string): Edit[] {
     return parsed(() => this.#text.addTerm(variable, name));
+  }
+
+  /** Returns the edits that change the range of a variable. */
+  setRange(variable: number, low: number, high: number): Edit[] {
+    return parsed(() => this.#text.setRange(variable, low, high));
+  }
+
+  /** Returns the edits that change the unit of a variable; an empty one is removed. */
+  setUnit(variable: number, unit: string): Edit[] {
+    return parsed(() => this.#text.setUnit(variable, unit));
+  }
+
+  /** Returns the edits that change the parameters of a term: numbers separated by commas, or in the notation of the text. */
+  setParameters(variable: number, term: number, to: string): Edit[] {
+    return parsed(() => this.#text.setParameters(variable, term, to));
+  }
+
+  /** Returns the edits that give a term another shape in about the same part of the range. */
+  setShape(variable: number, term: number, shape: string): Edit[] {
+    return parsed(() => this.#text.setShape(variable, term, shape));
   }
 
   /** The edits that add a rule. */
@@ -223,6 +264,9 @@ export interface About {
 export interface Value {
   name: string;
   value: number | null;
+  /** The ends of the interval whose middle is the value, if interval type-2 terms determine it; otherwise absent. */
+  low?: number;
+  high?: number;
   /** Whether no rule fires and the value is the default of the rule set. */
   isDefault: boolean;
   /** The largest firing strength. */

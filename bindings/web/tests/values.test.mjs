@@ -62,6 +62,41 @@ test('a wrong name, text or number of values is an error that says what to do', 
   assert.throws(() => rules.evaluateColumns([[8, 'x'], [9, 9]]), { message: /^row 2 of column `service` is the text "x"/ });
 });
 
+test('interval type-2 terms give an outcome an interval, and their curves have a lower one', async () => {
+  const dinner = await readFile(join(repository, 'tests/authoring/ok/type2.yaml'), 'utf8');
+  const [set, open] = [new RuleSet(dinner), new RuleText(dinner)];
+  for (const { value, low, high } of set.evaluate([5])) assert.ok(low < value && value < high, `${low}, ${value}, ${high}`);
+  const [tip] = set.explain([5]).outputs;
+  assert.deepEqual(set.evaluate([5])[0].low, tip.low);
+  assert.ok(!('low' in rules.evaluate([8, 9])[0]));
+  const [bad, good, odd] = open.variables()[0].terms;
+  assert.deepEqual([bad.curve.length, bad.lower.length, odd.lower.length], [8, 8, 0]);
+  assert.ok(good.lower.every((y, i) => i % 2 === 0 || y <= good.curve[i]));
+  const [food] = open.parts().variables;
+  assert.deepEqual(food.terms.map(({ shape, isEditable }) => [shape, isEditable]), [['interval type-2', false], ['interval type-2', false], ['triangle', true]]);
+  set.free();
+  open.free();
+});
+
+test('a range, a unit and a term are changed in place', () => {
+  const open = new RuleText(text);
+  const after = (edits) => edits.sort((a, b) => b.from - a.from).reduce((all, { from, to, insert }) => all.slice(0, from) + insert + all.slice(to), text);
+  const read = (edits) => {
+    const changed = new RuleText(after(edits));
+    const [variables, parts] = [changed.variables(), changed.parts()];
+    changed.free();
+    return { variables, parts };
+  };
+  const [low, high] = [-1, 12];
+  const { variables: [ranged] } = read(open.setRange(0, low, high));
+  assert.deepEqual([ranged.low, ranged.high], [low, high]);
+  assert.equal(read(open.setUnit(0, 'points')).variables[0].unit, 'points');
+  const term = open.parts().variables[0].terms.findIndex(({ canChangeShape }) => canChangeShape);
+  assert.equal(read(open.setShape(0, term, 'triangle')).parts.variables[0].terms[term].shape, 'triangle');
+  assert.throws(() => open.setRange(0, 3, 3), { message: /smaller one first/ });
+  open.free();
+});
+
 test('messages of several lines have lines', () => {
   assert.throws(() => new RuleSet('fuzzy: 1\n'), ({ message }) => message.includes('\n') && !message.includes('\\u{a}'));
 });

@@ -332,7 +332,8 @@ pub fn remove(document: &Document, part: Part) -> Result<Vec<Edit>, String> {
     )
 }
 
-const UNREADABLE: &str = "this part of the text cannot be changed here; change it in the text";
+pub(crate) const UNREADABLE: &str =
+    "this part of the text cannot be changed here; change it in the text";
 
 /// A change to verify.
 enum Change {
@@ -403,7 +404,7 @@ fn verified(
     }
 }
 
-fn readable(document: &Document) -> Result<&PartialModel, String> {
+pub(crate) fn readable(document: &Document) -> Result<&PartialModel, String> {
     let rules = document.rules().ok_or("the rule set cannot be read")?;
     match rules.names_unread {
         true => Err("a rule or a term cannot be read; correct it first".into()),
@@ -415,7 +416,7 @@ fn tree(document: &Document) -> Result<&Node, String> {
     document.source().tree().map_err(|_| UNREADABLE.to_owned())
 }
 
-fn variables(rules: &PartialModel) -> impl Iterator<Item = &Variable> {
+pub(crate) fn variables(rules: &PartialModel) -> impl Iterator<Item = &Variable> {
     let outputs = rules.model.outputs.iter().map(|output| &output.variable);
     rules.model.inputs.iter().chain(outputs)
 }
@@ -477,7 +478,7 @@ fn key_end(node: &Node, key: &str) -> Option<usize> {
     pair.map(|(name, _)| name.span.end + 1)
 }
 
-fn variable_node<'d>(
+pub(crate) fn variable_node<'d>(
     document: &'d Document,
     rules: &PartialModel,
     variable: usize,
@@ -525,7 +526,7 @@ fn is_flow(text: &str, node: &Node) -> bool {
 }
 
 /// The end of a node in the text, without the spaces before the next node.
-fn end(text: &str, node: &Node) -> usize {
+pub(crate) fn end(text: &str, node: &Node) -> usize {
     match &node.value {
         Value::List(_) | Value::Mapping(_) if !is_flow(text, node) => {
             let last = len(node).checked_sub(1).and_then(|last| entry(node, last));
@@ -538,7 +539,7 @@ fn end(text: &str, node: &Node) -> usize {
     }
 }
 
-fn trimmed(text: &str, node: &Node) -> Range<usize> {
+pub(crate) fn trimmed(text: &str, node: &Node) -> Range<usize> {
     let own = text.get(node.span.clone()).unwrap_or_default();
     node.span.start..node.span.start + own.trim_end().len()
 }
@@ -565,7 +566,7 @@ fn indent_of_entry<'t>(text: &'t str, node: &Node) -> &'t str {
 }
 
 /// The edit that inserts an entry before the one with this index, or after the last one.
-fn inserted(text: &str, node: &Node, index: usize, item: &str) -> Option<Edit> {
+pub(crate) fn inserted(text: &str, node: &Node, index: usize, item: &str) -> Option<Edit> {
     let at = |place: usize, text: String| {
         Some(Edit {
             span: place..place,
@@ -601,7 +602,7 @@ fn inserted(text: &str, node: &Node, index: usize, item: &str) -> Option<Edit> {
 
 /// Returns the edit that removes an entry. In a block, the lines of the entry are removed; comments
 /// on separate lines are kept.
-fn removed(text: &str, node: &Node, index: usize) -> Option<Edit> {
+pub(crate) fn removed(text: &str, node: &Node, index: usize) -> Option<Edit> {
     let (first, last) = entry(node, index)?;
     let behind = match last.span.is_empty() {
         true => first.span.end + 1,
@@ -670,15 +671,12 @@ fn shortened(value: f64, width: f64) -> f64 {
     format!("{value:.digits$}").parse().unwrap_or(value)
 }
 
-fn rounded(value: f64, variable: &Variable) -> f64 {
+pub(crate) fn rounded(value: f64, variable: &Variable) -> f64 {
     shortened(value, variable.high - variable.low)
 }
 
 fn written(number: f64) -> String {
-    match Node::number(number).value {
-        Value::Scalar(scalar) => scalar.text,
-        _ => String::new(),
-    }
+    fuzzy::yaml::to_line(&Node::number(number))
 }
 
 #[cfg(test)]

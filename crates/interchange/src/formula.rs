@@ -17,7 +17,7 @@ pub(crate) fn read(
         match own {
             Some(own) if *word == "x" => text.push_str(&quoted(own)),
             // jFuzzyLogic writes functions in capitals.
-            _ if is_call && is_name(word) => text.push_str(&word.to_lowercase()),
+            _ if is_call && is_name(word) => text.push_str(&word.to_ascii_lowercase()),
             _ => text.push_str(word),
         }
         text.push(' ');

@@ -83,7 +83,7 @@ impl<'t> ModelDraft<'t> {
         if parsed.is_none() {
             let message = format!("`{word}` is not a number");
             let with_point = word.replacen(',', ".", 1);
-            let help = match word.to_lowercase().contains("pi") {
+            let help = match word.to_ascii_lowercase().contains("pi") {
                 true => "write it out in digits: 0.7853981633974483 for pi/4".to_owned(),
                 false if word.contains(',') && number(&with_point).is_some() => {
                     format!("write a decimal point: `{with_point}`")

@@ -26,7 +26,7 @@ impl NameRules {
         let letter = |c: char| if (self.is_letter)(c) { c } else { '_' };
         let mut plain: String = name.trim().chars().map(letter).collect();
         let begins = plain.starts_with(self.is_first);
-        let keyword = self.keywords.contains(&plain.to_lowercase().as_str());
+        let keyword = self.keywords.contains(&plain.to_ascii_lowercase().as_str());
         if !begins || keyword {
             plain.insert(0, '_');
         }

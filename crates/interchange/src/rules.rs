@@ -268,7 +268,7 @@ pub(crate) fn write(rule: &Rule, operators: Operators, and: &str) -> Option<Vec<
 }
 
 fn push_term(text: &mut String, hedges: &[Hedge], term: Option<&Name>) {
-    let hedges = hedges.iter().map(|hedge| hedge.word().to_lowercase());
+    let hedges = hedges.iter().map(|hedge| hedge.word().to_ascii_lowercase());
     for word in hedges.chain(term.map(|term| term.text.clone())) {
         text.push(' ');
         text.push_str(&word);

@@ -182,9 +182,7 @@ impl Bounds {
         inputs: &[f64],
         outcomes: &mut [Outcome],
     ) {
-        stage.outcomes_by(scratch, inputs, outcomes, |arrays, buffers| {
-            table::fire_row(arrays, buffers);
-        });
+        stage.outcomes_by(scratch, inputs, outcomes, super::fire_rules);
         let StageScratch {
             table: upper,
             workspace,
@@ -196,7 +194,7 @@ impl Bounds {
         let lower = &mut lower.table;
         let values = inputs.as_chunks().0.iter().copied();
         table::clamp(&self.lower.arrays, values, &mut lower.values);
-        table::fire_row(&self.lower.arrays, lower);
+        super::fire_rules(&self.lower.arrays, lower);
         let of_outputs = stage.outputs.iter().zip(&self.lower.outputs);
         let reductions = self.reductions.iter().zip(of_outputs).zip(outcomes);
         for (index, ((reduction, (of_upper, of_lower)), outcome)) in reductions.enumerate() {

@@ -417,11 +417,7 @@ impl Stage {
                     table::fire::<_, _, _, _, 1, true>(arrays, buffers);
                 })
             }
-            SingleRowMethod::Rules => {
-                self.outcomes_by(scratch, inputs, outcomes, |arrays, buffers| {
-                    table::fire_row(arrays, buffers);
-                })
-            }
+            SingleRowMethod::Rules => self.outcomes_by(scratch, inputs, outcomes, fire_rules),
             SingleRowMethod::Bounds(bounds) => bounds.outcomes(self, scratch, inputs, outcomes),
         }
     }
@@ -452,6 +448,11 @@ impl Stage {
         };
         output.integrated()?.value(strengths, workspace)
     }
+}
+
+/// Fires rules of any kind in one row. All callers share one compiled copy, which is large.
+fn fire_rules(arrays: &OwnedTable, buffers: &mut RowBuffers<1>) {
+    table::fire_row(arrays, buffers);
 }
 
 impl CompiledOutput {

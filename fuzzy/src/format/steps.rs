@@ -101,7 +101,7 @@ fn advice(term: &str, limit: &Node) -> Option<String> {
     match number.parse::<f64>() {
         Ok(limit) if limit.is_finite() => Some(format!("write `{term}: {number}`")),
         Ok(_) => Some(format!("the last term has no limit: write `{term}:`")),
-        Err(_) if text.to_lowercase().contains("inf") => {
+        Err(_) if text.to_ascii_lowercase().contains("inf") => {
             Some(format!("the last term has no limit: write `{term}:`"))
         }
         Err(_) => None,

@@ -257,13 +257,13 @@ fn is_missing(
                 Some(other) if other != last => {
                     format!(
                         "name the input: `{} {other} IS {name}`",
-                        connective.to_uppercase()
+                        connective.to_ascii_uppercase()
                     )
                 }
                 _ => {
                     format!(
                         "name the input again: `{} {last} IS {name}`",
-                        connective.to_uppercase()
+                        connective.to_ascii_uppercase()
                     )
                 }
             },

@@ -111,7 +111,10 @@ pub(super) fn foreign(text: &str) -> Option<Diagnostic> {
 
 /// Returns the format and the first section of a FIS or FLL file that lacks this section.
 fn headless(lines: &[(usize, &str)]) -> Option<(&'static str, &'static str)> {
-    let folded: Vec<String> = lines.iter().map(|(_, line)| line.to_lowercase()).collect();
+    let folded: Vec<String> = lines
+        .iter()
+        .map(|(_, line)| line.to_ascii_lowercase())
+        .collect();
     let begins = |start: &str| folded.iter().any(|line| line.starts_with(start));
     if begins("[input1]") && begins("[output1]") && !begins("[system]") {
         Some(("FIS", "[System]"))
@@ -242,7 +245,7 @@ pub(super) fn comment(text: &str, finding: &mut Diagnostic) {
 
 /// Returns the format of a text that starts with this line.
 fn program(first: &str) -> Option<&'static str> {
-    let folded = first.to_lowercase();
+    let folded = first.to_ascii_lowercase();
     let begins = |starts: &[&str]| starts.iter().any(|start| folded.starts_with(start));
     if begins(&["[system]"]) {
         Some("a FIS file of MATLAB")

@@ -17,7 +17,7 @@ import {
   type Stretch,
   type VerdictChanges,
   type VerdictSettings,
-} from 'flagred';
+} from 'flagred/flight';
 import type { Tell } from '../calls';
 
 /** A log that the user chose. */

@@ -25,7 +25,7 @@ import {
   type Start,
   type View,
   type ViewedRules,
-} from 'flagred';
+} from 'flagred/rules';
 import type { Tell } from '../calls';
 
 interface Known {
@@ -75,7 +75,7 @@ export interface Opened {
   text: string;
   isProfile: boolean;
   variables: DrawnVariable[];
-  /** The parts that forms can rename and remove; `null` for a profile. */
+  /** The parts that forms can change; `null` for a profile. */
   parts: Parts | null;
   /** `undefined` if the rule set cannot be used. */
   about: About | undefined;
@@ -98,6 +98,13 @@ export const rulesAddVariable = (_tell: Tell, text: string, name: string, low: n
 export const rulesAddTerm = (_tell: Tell, text: string, variable: number, name: string): Edit[] => of(text).open.addTerm(variable, name);
 export const rulesRemoveNamed = (_tell: Tell, text: string, variable: number, term?: number): Edit[] =>
   of(text).open.removeNamed(variable, term);
+export const rulesSetRange = (_tell: Tell, text: string, variable: number, low: number, high: number): Edit[] =>
+  of(text).open.setRange(variable, low, high);
+export const rulesSetUnit = (_tell: Tell, text: string, variable: number, unit: string): Edit[] => of(text).open.setUnit(variable, unit);
+export const rulesSetShape = (_tell: Tell, text: string, variable: number, term: number, shape: string): Edit[] =>
+  of(text).open.setShape(variable, term, shape);
+export const rulesSetParameters = (_tell: Tell, text: string, variable: number, term: number, to: string): Edit[] =>
+  of(text).open.setParameters(variable, term, to);
 export const rulesAddRule = (_tell: Tell, text: string, rule: string): Edit[] => of(text).open.addRule(rule);
 export const rulesChangeRule = (_tell: Tell, text: string, rule: number, to: string): Edit[] => of(text).open.changeRule(rule, to);
 export const rulesRemoveRule = (_tell: Tell, text: string, rule: number): Edit[] => of(text).open.removeRule(rule);

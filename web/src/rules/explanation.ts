@@ -13,18 +13,19 @@ export function explain(place: HTMLElement, about: About, { outputs, rules, inpu
       { class: 'value' },
       h('span', { class: 'soft' }, `${output.name} `),
       h('b', {}, output.value === null ? 'unknown' : told(output.value, known?.unit ?? null)),
+      typeof output.low === 'number' && typeof output.high === 'number' && h('span', { class: 'soft' }, ` from ${between(output.low, output.high)}`),
       output.value === null && h('span', { class: 'soft' }, ' no rule fires'),
       output.is_default && h('span', { class: 'soft' }, ' the default: no rule fires'),
     );
   });
-  const fired = rules.map(({ rule, text, strength }) => {
+  const fired = rules.map(({ rule, text, strength, lower }) => {
     const bar = h('span', { class: 'bar' });
     bar.style.inlineSize = `${100 * Math.min(strength, 1)}%`;
     bar.style.opacity = String(0.35 + 0.65 * Math.min(strength, 1));
-    return h('li', { value: rule }, h('div', {}, h('span', { class: 'track', 'aria-hidden': 'true' }, bar), h('span', { class: 'strength' }, strength.toFixed(3)), h('code', {}, text)));
+    return h('li', { value: rule }, h('div', {}, h('span', { class: 'track', 'aria-hidden': 'true' }, bar), h('span', { class: 'strength' }, strength.toFixed(3)), h('code', {}, text, typeof lower === 'number' && h('span', { class: 'soft' }, ` at least ${lower.toFixed(3)}`))));
   });
   const degrees = inputs.map((input, i) => {
-    const terms = input.terms.filter(({ degree }) => degree > 0).map(({ term, degree }) => `${term} ${short(degree)}`);
+    const terms = input.terms.filter(({ degree }) => degree > 0).map(({ term, degree, lower }) => `${term} ${typeof lower === 'number' ? between(lower, degree) : short(degree)}`);
     const unit = about.inputs[i]?.unit ?? null;
     return h('li', {}, h('b', {}, input.name), ` ${told(input.value, unit)} `, h('span', { class: 'soft' }, terms.join(', ') || 'in no term'));
   });
@@ -35,3 +36,6 @@ export function explain(place: HTMLElement, about: About, { outputs, rules, inpu
     h('ul', { class: 'degrees', 'aria-label': 'Inputs and their terms' }, ...degrees),
   );
 }
+
+/** The bounds that interval type-2 terms give to a number. */
+const between = (low: number, high: number): string => `${short(low)} to ${short(high)}`;

@@ -89,6 +89,10 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
       addVariable: (...variable) => edits((text) => engine.call('rulesAddVariable', text, ...variable)),
       addTerm: (...term) => edits((text) => engine.call('rulesAddTerm', text, ...term)),
       removeNamed: (...named) => edits((text) => engine.call('rulesRemoveNamed', text, ...named)),
+      setRange: (...range) => edits((text) => engine.call('rulesSetRange', text, ...range)),
+      setUnit: (...unit) => edits((text) => engine.call('rulesSetUnit', text, ...unit)),
+      setShape: (...shape) => edits((text) => engine.call('rulesSetShape', text, ...shape)),
+      setParameters: (...parameters) => edits((text) => engine.call('rulesSetParameters', text, ...parameters)),
       addRule: (rule) => edits((text) => engine.call('rulesAddRule', text, rule)),
       changeRule: (...rule) => edits((text) => engine.call('rulesChangeRule', text, ...rule)),
       removeRule: (rule) => edits((text) => engine.call('rulesRemoveRule', text, rule)),
@@ -98,14 +102,15 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
       try {
         if (app.file?.readOnly) throw new Error(`${app.file.name} is read-only`);
         const change = await run();
-        if (edit.text() !== text) return false;
+        if (edit.text() !== text) return 'the text has changed meanwhile; try again';
         edit.apply(change);
-        return true;
+        return undefined;
       } catch (error) {
-        refused(error as Error);
-        return false;
+        if (error instanceof Trapped) refused(error);
+        return (error as Error).message;
       }
     },
+    app.say,
   );
   const stale = h('p', { class: 'stale', hidden: true }, 'The text has errors. What is shown here belongs to the last text without errors.');
   const legend = h('ul', { class: 'legend rules', hidden: true });

@@ -1,8 +1,9 @@
-/** A table of variables, terms and rules, which forms add, rename and remove. Each change is an edit of the text. */
+/**
+ * A table of variables, terms and rules, which forms add, change, rename and remove. Each change is an edit of the text.
+ */
 
-import type { DrawnVariable, Edit, Parts } from 'flagred';
+import type { DrawnVariable, Edit, Parts, TermFields } from 'flagred';
 import { fill, h } from '../dom';
-import { short } from './numbers';
 
 /** The changes that forms make. Each returns the edits of the text, or fails with a message for the user. */
 export interface Changes {
@@ -10,6 +11,10 @@ export interface Changes {
   addVariable(name: string, low: number, high: number, isOutput: boolean): Promise<Edit[]>;
   addTerm(variable: number, name: string): Promise<Edit[]>;
   removeNamed(variable: number, term?: number): Promise<Edit[]>;
+  setRange(variable: number, low: number, high: number): Promise<Edit[]>;
+  setUnit(variable: number, unit: string): Promise<Edit[]>;
+  setShape(variable: number, term: number, shape: string): Promise<Edit[]>;
+  setParameters(variable: number, term: number, to: string): Promise<Edit[]>;
   addRule(rule: string): Promise<Edit[]>;
   changeRule(rule: number, to: string): Promise<Edit[]>;
   removeRule(rule: number): Promise<Edit[]>;
@@ -21,61 +26,124 @@ export interface Table {
   show(parts: Parts | null, variables: DrawnVariable[]): void;
 }
 
-/** Creates the table. `change` makes a change of the text, and returns whether it was made. */
-export function table(changes: Changes, change: (run: () => Promise<Edit[]>) => Promise<boolean>): Table {
+/**
+ * Creates the table. `change` makes a change of the text, and returns the reason if it was refused. `say` shows such a
+ * reason if it does not belong to a box.
+ */
+export function table(
+  changes: Changes,
+  change: (run: () => Promise<Edit[]>) => Promise<string | undefined>,
+  say: (message: string) => void,
+): Table {
   const element = h('div', { class: 'parts' });
   let shape = '';
+  let messages = 0;
+
+  async function made(run: () => Promise<Edit[]>): Promise<boolean> {
+    const refusal = await change(run);
+    if (refusal) say(refusal);
+    return refusal === undefined;
+  }
 
   const button = (words: string, label: string, key: string, run: () => Promise<Edit[]>) =>
-    h('button', { type: 'button', class: 'small', 'aria-label': label, title: label, 'data-key': key, onclick: () => void change(run) }, words);
+    h('button', { type: 'button', class: 'small', 'aria-label': label, title: label, 'data-key': key, onclick: () => void made(run) }, words);
 
-  /** A box whose text can be edited; if the change is refused, the old text is restored. */
-  function box(label: string, value: string, key: string, run: (value: string) => Promise<Edit[]>): HTMLInputElement {
-    const input = h('input', { type: 'text', value, 'aria-label': label, 'data-key': key, spellcheck: 'false', autocapitalize: 'off' });
+  /** Shows the reason below a box, or removes it. */
+  function mark(box: HTMLElement, refusal: string | undefined): void {
+    const old = box.getAttribute('aria-describedby');
+    if (old) box.ownerDocument.getElementById(old)?.remove();
+    for (const name of ['aria-invalid', 'aria-describedby']) box.removeAttribute(name);
+    if (!refusal) return;
+    const id = `refusal-${messages++}`;
+    box.setAttribute('aria-invalid', 'true');
+    box.setAttribute('aria-describedby', id);
+    box.closest('li, .cell')!.append(h('p', { class: 'refusal', role: 'alert', id }, refusal));
+  }
+
+  /** A box whose content can be edited. If the change is refused, the reason is shown and Escape restores the old content. */
+  function box(label: string, value: string, key: string, run: (value: string) => Promise<Edit[]>, type = 'text'): HTMLInputElement {
+    const input = h('input', { type, step: 'any', value, 'aria-label': label, 'data-key': key, spellcheck: 'false', autocapitalize: 'off' });
     input.addEventListener('change', () => {
       const next = input.value.trim();
-      if (next === value) return;
-      void change(() => run(next)).then((isMade) => isMade || (input.value = value));
+      if (next === value) return mark(input, undefined);
+      void change(() => run(next)).then((refusal) => mark(input, refusal));
     });
     input.addEventListener('keydown', (event) => {
-      if (event.key === 'Escape') input.value = value;
+      if (event.key !== 'Escape') return;
+      input.value = value;
+      mark(input, undefined);
     });
     return input;
   }
 
+  const sized = (input: HTMLInputElement, size: number) => {
+    input.size = size;
+    return input;
+  };
+
   /** A form whose boxes are emptied after a change was made. */
   function form(label: string, run: () => Promise<Edit[]>, ...children: (Node | string)[]): HTMLFormElement {
-    const made = h('form', { 'aria-label': label }, ...children);
-    made.addEventListener('submit', (event) => {
+    const element = h('form', { 'aria-label': label }, ...children);
+    element.addEventListener('submit', (event) => {
       event.preventDefault();
-      void change(run).then((isMade) => isMade && made.reset());
+      void made(run).then((isMade) => isMade && element.reset());
     });
-    return made;
+    return element;
   }
 
-  function variableRow(variable: DrawnVariable, i: number, { at, terms }: Parts['variables'][number]): HTMLElement {
+  /** The shape and the parameters of a term. */
+  function shaped(of: string, { shape, parameters, names, isEditable, canChangeShape }: TermFields, shapes: string[], i: number, t: number): (Node | string)[] {
+    if (!isEditable) return [h('span', { class: 'soft' }, shape === 'limit' ? 'the rest of the range' : `${shape}, edited as text: `), h('code', {}, parameters)];
+    const label = `${names.length > 1 ? `Parameters (${names.join(', ')})` : `${shape[0]!.toUpperCase()}${shape.slice(1)}`} of ${of}`;
+    const numbers = sized(box(label, parameters, `parameters-${i}-${t}`, (to) => changes.setParameters(i, t, to)), Math.max(5, Math.min(parameters.length, 24)));
+    numbers.title = names.join(', ');
+    if (!canChangeShape) return [h('span', { class: 'soft' }, shape), numbers];
+    const known = shapes.includes(shape) ? shapes : [shape, ...shapes];
+    const select = h('select', { 'aria-label': `Shape of ${of}`, 'data-key': `shape-${i}-${t}` }, ...known.map((name) => h('option', { value: name }, name.replaceAll('_', ' '))));
+    select.value = shape;
+    select.addEventListener('change', () => {
+      void change(() => changes.setShape(i, t, select.value)).then((refusal) => {
+        mark(select, refusal);
+        if (refusal) select.value = shape;
+      });
+    });
+    return [select, numbers];
+  }
+
+  function variableParts(variable: DrawnVariable, i: number, { at, terms }: Parts['variables'][number], shapes: string[]): HTMLElement {
     const { name, isOutput, low, high, unit } = variable;
     const kind = isOutput ? 'output' : 'input';
-    const sized = (input: HTMLInputElement, text: string) => {
-      input.size = Math.max(4, text.length);
-      return input;
-    };
-    const chips = variable.terms.map((term, t) =>
-      h(
+    const rows = terms.map((fields, t) => {
+      const term = variable.terms[t]!.name;
+      return h(
         'li',
         {},
-        sized(box(`Name of term ${term.name} of ${name}`, term.name, `term-${i}-${t}`, (to) => changes.rename(terms[t]!, to)), term.name),
-        button('×', `Remove term ${term.name} of ${name}`, `remove-${i}-${t}`, () => changes.removeNamed(i, t)),
-      ),
-    );
+        sized(box(`Name of term ${term} of ${name}`, term, `term-${i}-${t}`, (to) => changes.rename(fields.at, to)), Math.max(4, term.length)),
+        ...shaped(`term ${term} of ${name}`, fields, shapes, i, t),
+        button('×', `Remove term ${term} of ${name}`, `remove-${i}-${t}`, () => changes.removeNamed(i, t)),
+      );
+    });
     const added = h('input', { type: 'text', 'aria-label': `New term of ${name}`, placeholder: 'new term', required: true, size: 8, 'data-key': `new-${i}`, autocapitalize: 'off' });
-    const range = low === null || high === null ? '' : `${short(low)} to ${short(high)}${unit ? ` ${unit}` : ''}`;
+    // Each box reads the other one when it is changed.
+    const from: HTMLInputElement = box(`Lower end of the range of ${name}`, low === null ? '' : String(low), `low-${i}`, () => changes.setRange(i, from.valueAsNumber, to.valueAsNumber), 'number');
+    const to: HTMLInputElement = box(`Upper end of the range of ${name}`, high === null ? '' : String(high), `high-${i}`, () => changes.setRange(i, from.valueAsNumber, to.valueAsNumber), 'number');
+    const units = sized(box(`Unit of ${name}`, unit ?? '', `unit-${i}`, (to) => changes.setUnit(i, to)), 4);
+    units.placeholder = 'unit';
     return h(
-      'tr',
-      {},
-      h('th', { scope: 'row' }, sized(box(`Name of ${kind} ${name}`, name, `variable-${i}`, (to) => changes.rename(at, to)), name), h('span', { class: 'soft' }, `${kind}, ${range}`)),
-      h('td', {}, h('ul', {}, ...chips, h('li', {}, form(`Add a term to ${name}`, () => changes.addTerm(i, added.value.trim()), added, h('button', { class: 'small', title: `Add a term to ${name}` }, 'Add'))))),
-      h('td', {}, button('×', `Remove ${kind} ${name}`, `remove-${i}`, () => changes.removeNamed(i))),
+      'section',
+      { 'aria-label': `${kind} ${name}` },
+      h(
+        'div',
+        { class: 'cell' },
+        sized(box(`Name of ${kind} ${name}`, name, `variable-${i}`, (to) => changes.rename(at, to)), Math.max(4, name.length)),
+        h('span', { class: 'soft' }, kind),
+        from,
+        h('span', { class: 'soft' }, 'to'),
+        to,
+        units,
+        button('×', `Remove ${kind} ${name}`, `remove-${i}`, () => changes.removeNamed(i)),
+      ),
+      h('ul', {}, ...rows, h('li', {}, form(`Add a term to ${name}`, () => changes.addTerm(i, added.value.trim()), added, h('button', { class: 'small', title: `Add a term to ${name}` }, 'Add')))),
     );
   }
 
@@ -122,7 +190,7 @@ export function table(changes: Changes, change: (run: () => Promise<Edit[]>) => 
   return {
     element,
     show(parts, variables) {
-      const now = JSON.stringify([parts?.variables.map(({ terms }) => terms.length), parts, variables.map(({ name, isOutput, low, high, unit, terms }) => [name, isOutput, low, high, unit, terms.map((term) => term.name)])]);
+      const now = JSON.stringify([parts, variables.map(({ name, isOutput, low, high, unit, terms }) => [name, isOutput, low, high, unit, terms.map((term) => term.name)])]);
       if (now === shape) return;
       shape = now;
       if (!parts || parts.variables.length !== variables.length) {
@@ -134,7 +202,7 @@ export function table(changes: Changes, change: (run: () => Promise<Edit[]>) => 
       fill(
         element,
         h('h2', {}, 'Variables and terms'),
-        h('table', {}, h('thead', {}, h('tr', {}, h('th', { scope: 'col' }, 'Variable'), h('th', { scope: 'col' }, 'Terms'), h('td', {}))), h('tbody', {}, ...variables.map((variable, i) => variableRow(variable, i, parts.variables[i]!)))),
+        ...variables.map((variable, i) => variableParts(variable, i, parts.variables[i]!, parts.shapes)),
         newVariable(),
         h('h2', {}, 'Rules'),
         h(

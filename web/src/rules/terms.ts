@@ -93,10 +93,11 @@ function plot(first: DrawnVariable, index: number, { distinct, lines }: Colours,
   const legend = first.terms.map((term, t) => {
     return h('li', {}, coloured(h('span', { class: 'swatch', 'aria-hidden': 'true' }), t), term.name);
   });
+  const type2 = h('span', { class: 'tag', title: 'Shaded from the lower to the upper membership function' }, 'interval type-2');
   const element = h(
     'section',
     { class: 'variable', 'aria-label': first.name },
-    h('h3', {}, first.name, first.unit && h('span', { class: 'soft' }, ` ${first.unit}`), first.isOutput && h('span', { class: 'tag' }, 'output')),
+    h('h3', {}, first.name, first.unit && h('span', { class: 'soft' }, ` ${first.unit}`), first.isOutput && h('span', { class: 'tag' }, 'output'), type2),
     h('ul', { class: 'legend' }, ...legend),
     h('div', { class: 'picture' }),
     told,
@@ -177,11 +178,13 @@ function plot(first: DrawnVariable, index: number, { distinct, lines }: Colours,
       told.textContent = 'The range cannot be read.';
       return;
     }
+    type2.hidden = next.terms.every(({ lower }) => lower.length === 0);
     // The shown range does not change while a handle is held; otherwise the handle would move away from the pointer.
     if (!svg.querySelector('.held') || low === high) [low, high] = [from, to];
     ruled();
     next.terms.forEach((term, t) => {
-      curves[t]!.setAttribute('d', outline(term));
+      curves[t]!.setAttribute('d', outline(term.curve, term.handles) + outline(term.lower, []));
+      curves[t]!.classList.toggle('footprint', term.lower.length > 0);
       term.handles.forEach((one, i) => points[t]![i]!.show(term, one));
     });
   }
@@ -205,7 +208,7 @@ function plot(first: DrawnVariable, index: number, { distinct, lines }: Colours,
   }
 
   /** The outline of a term: a curve for a set, a line for a number. */
-  function outline({ curve, handles }: DrawnTerm): string {
+  function outline(curve: number[], handles: Handle[]): string {
     const places: string[] = [];
     for (let i = 0; i + 1 < curve.length; i += 2) places.push(`${across(curve[i]!).toFixed(2)} ${up(curve[i + 1]!).toFixed(2)}`);
     if (places.length > 0) return `M${across(curve[0]!)} ${up(0)}L${places.join('L')}L${across(curve.at(-2)!)} ${up(0)}`;

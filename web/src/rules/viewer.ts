@@ -161,14 +161,15 @@ export function viewer(moved: (input: number, value: number) => void): Viewer {
       const now = JSON.stringify([words, next.map(({ name, isOutput }) => [name, isOutput])]);
       if (now !== shape) build(viewed.rules);
       shape = now;
-      const strengths = new Map(explanation.rules.map(({ rule, strength }) => [rule, strength]));
+      const strengths = new Map(explanation.rules.map(({ rule, strength, lower }) => [rule, { strength, lower }]));
       const parts = new Map<number, string>();
       let at = 0;
       rows.forEach(({ row, conditions, conclusions, strength }, i) => {
         const rule = viewed.rules[i]!;
-        const fired = strengths.get(i + 1) ?? 0;
+        const { strength: fired, lower } = strengths.get(i + 1) ?? { strength: 0, lower: null };
         row.classList.toggle('fires', fired > 0);
-        strength.textContent = fired > 0 ? fired.toFixed(3) : '0';
+        const least = typeof lower === 'number' ? `${lower.toFixed(3)} to ` : '';
+        strength.textContent = fired > 0 ? least + fired.toFixed(3) : '0';
         conditions.forEach((one, c) => {
           draw(one, rule.conditions[c]!.curve, degrees[at++] ?? NaN, false);
           if (one.line) place(one.line, one.variable, point[one.variable]);

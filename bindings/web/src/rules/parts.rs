@@ -1,10 +1,11 @@
-//! Parts of an open text that are added, renamed and removed by forms.
+//! Parts of an open text that are added, changed, renamed and removed by forms.
 
 use std::ops::Range;
 
 use flagred_authoring::{
     Edit,
     structure::{self, Part},
+    values,
 };
 use serde::Serialize;
 use wasm_bindgen::{JsError, prelude::wasm_bindgen};
@@ -17,45 +18,68 @@ use crate::failure::failure;
 
 #[derive(Serialize)]
 struct Parts {
-    variables: Vec<Named>,
+    variables: Vec<NamedVariable>,
     rules: Vec<String>,
+    /// The shapes that a term can get.
+    shapes: &'static [&'static str],
 }
 
 #[derive(Serialize)]
-struct Named {
-    /// The span of its name.
+struct NamedVariable {
+    /// The start of its name.
     at: usize,
-    /// The spans of the names of its terms.
-    terms: Vec<usize>,
+    terms: Vec<NamedTerm>,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct NamedTerm {
+    /// The start of its name.
+    at: usize,
+    shape: String,
+    parameters: String,
+    names: Vec<&'static str>,
+    is_editable: bool,
+    can_change_shape: bool,
 }
 
 #[wasm_bindgen(js_class = RuleText)]
 impl RuleText {
-    /// The spans of the names of variables and terms, inputs first, and the rules, as JSON; `null` for a profile and
-    /// for a text that cannot be read.
+    /// The positions of the names of variables and terms, inputs first, the fields of the terms, and the rules, as JSON;
+    /// `null` for a profile and for a text that cannot be read.
     pub fn parts(&self) -> Result<String, JsError> {
+        let Some((places, model)) = structure::places(&self.document).zip(self.document.model())
+        else {
+            return json(&None::<Parts>);
+        };
         let text = self.document.text();
         let at = |span: &Range<usize>| utf16(text, span.start);
-        let model = self.document.model();
-        json(
-            &structure::places(&self.document)
-                .zip(model)
-                .map(|(places, model)| Parts {
-                    variables: places
-                        .variables
-                        .iter()
-                        .map(|(name, terms)| Named {
-                            at: at(name),
-                            terms: terms.iter().map(at).collect(),
-                        })
-                        .collect(),
-                    rules: model
-                        .rules
-                        .iter()
-                        .map(|rule| rule.rule.to_string())
-                        .collect(),
-                }),
-        )
+        let term = |v, (t, name)| {
+            let fields = values::fields(&self.document, v, t)?;
+            Some(NamedTerm {
+                at: at(name),
+                shape: fields.shape,
+                parameters: fields.parameters,
+                names: fields.names,
+                is_editable: fields.is_editable,
+                can_change_shape: fields.can_change_shape,
+            })
+        };
+        let variables = places.variables.iter().enumerate();
+        let variables = variables.map(|(v, (name, terms))| NamedVariable {
+            at: at(name),
+            terms: terms
+                .iter()
+                .enumerate()
+                .filter_map(|one| term(v, one))
+                .collect(),
+        });
+        let rules = model.rules.iter().map(|rule| rule.rule.to_string());
+        json(&Some(Parts {
+            variables: variables.collect(),
+            rules: rules.collect(),
+            shapes: &values::SHAPES,
+        }))
     }
 
     /// The edits that add an input or output, as JSON.
@@ -79,6 +103,36 @@ impl RuleText {
     #[wasm_bindgen(js_name = addTerm)]
     pub fn add_term(&self, variable: usize, name: &str) -> Result<String, JsError> {
         self.changed(structure::add_term(&self.document, variable, name))
+    }
+
+    /// The edits that change the range of a variable, as JSON.
+    #[wasm_bindgen(js_name = setRange)]
+    pub fn set_range(&self, variable: usize, low: f64, high: f64) -> Result<String, JsError> {
+        self.changed(values::set_range(&self.document, variable, (low, high)))
+    }
+
+    /// The edits that change the unit of a variable, as JSON; an empty one is removed.
+    #[wasm_bindgen(js_name = setUnit)]
+    pub fn set_unit(&self, variable: usize, unit: &str) -> Result<String, JsError> {
+        self.changed(values::set_unit(&self.document, variable, unit))
+    }
+
+    /// The edits that change the parameters of a term, as JSON.
+    #[wasm_bindgen(js_name = setParameters)]
+    pub fn set_parameters(
+        &self,
+        variable: usize,
+        term: usize,
+        to: &str,
+    ) -> Result<String, JsError> {
+        let place = (variable, term);
+        self.changed(values::set_parameters(&self.document, place, to))
+    }
+
+    /// The edits that give a term another shape in about the same part of the range, as JSON.
+    #[wasm_bindgen(js_name = setShape)]
+    pub fn set_shape(&self, variable: usize, term: usize, shape: &str) -> Result<String, JsError> {
+        self.changed(values::set_shape(&self.document, (variable, term), shape))
     }
 
     /// The edits that add a rule, as JSON.

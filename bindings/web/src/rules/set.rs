@@ -106,6 +106,11 @@ struct About<'a> {
 struct Value<'a> {
     name: &'a str,
     value: Option<f64>,
+    /// The ends of the interval that interval type-2 terms determine; otherwise absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    low: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    high: Option<f64>,
     is_default: bool,
     coverage: f64,
     /// The number of the dominant rule, from 1.
@@ -146,13 +151,21 @@ impl RuleSet {
             .evaluate(point)
             .map_err(|error| failure(error, None))?;
         let names = self.engine.output_names();
-        let value = |(name, outcome): (_, &Outcome)| Value {
-            name,
-            value: outcome.value(),
-            is_default: matches!(outcome.state, State::Default(_)),
-            coverage: outcome.coverage,
-            dominant_rule: outcome.dominant_rule.map(|rule| rule + 1),
-            clamped: outcome.clamped,
+        let value = |(name, outcome): (_, &Outcome)| {
+            let (low, high) = match outcome.state {
+                State::Interval { low, high } => (Some(low), Some(high)),
+                _ => (None, None),
+            };
+            Value {
+                name,
+                value: outcome.value(),
+                low,
+                high,
+                is_default: matches!(outcome.state, State::Default(_)),
+                coverage: outcome.coverage,
+                dominant_rule: outcome.dominant_rule.map(|rule| rule + 1),
+                clamped: outcome.clamped,
+            }
         };
         json(&names.zip(&outcomes).map(value).collect::<Vec<_>>())
     }

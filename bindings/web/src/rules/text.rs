@@ -4,7 +4,7 @@ use flagred::{loaded, profile::Profile};
 use flagred_authoring::{Document, Edit, completion, handles, layout, names, slice};
 use fuzzy::{
     diagnostic::{Diagnostic, Severity},
-    model::{Defuzzifier, Term, Variable},
+    model::{Defuzzifier, MembershipFunction, Variable},
 };
 use serde::Serialize;
 use wasm_bindgen::{JsError, prelude::wasm_bindgen};
@@ -249,6 +249,8 @@ struct DrawnTerm<'a> {
     shape: String,
     /// The curve as alternating x and degree; empty for a number, which is not a fuzzy set.
     curve: Vec<f64>,
+    /// The curve of the lower membership function of an interval type-2 term; otherwise empty.
+    lower: Vec<f64>,
     handles: Vec<Handle>,
 }
 
@@ -284,13 +286,19 @@ impl<'a> Drawn<'a> {
                 high: handle.high,
                 moves_degree: handle.moves_degree,
             });
+            let is_set = output != Some(true) && has_range;
+            let drawn = |shape, height| match is_set {
+                true => curve(variable, shape, height),
+                false => Vec::new(),
+            };
+            let upper = &term.membership_function;
+            let lower = term.lower.iter();
+            let lower = lower.flat_map(|lower| drawn(&lower.membership_function, lower.height));
             DrawnTerm {
                 name: &term.name,
-                shape: fuzzy::format::shape_text(&term.membership_function),
-                curve: match output != Some(true) && has_range {
-                    true => curve(variable, term),
-                    false => Vec::new(),
-                },
+                shape: fuzzy::format::shape_text(upper),
+                curve: drawn(upper, term.height),
+                lower: lower.collect(),
                 handles: handles.collect(),
             }
         });
@@ -307,13 +315,13 @@ impl<'a> Drawn<'a> {
     }
 }
 
-/// A term over the range of its variable; the corners if it has corners.
-fn curve(variable: &Variable, term: &Term) -> Vec<f64> {
+/// A membership function over the range of a variable; the corners if it has corners.
+fn curve(variable: &Variable, shape: &MembershipFunction, height: f64) -> Vec<f64> {
     let (low, high) = (variable.low, variable.high);
-    let at = |x: f64| [x, term.membership(x)];
-    if let Some(corners) = term.membership_function.corners() {
+    let at = |x: f64| [x, height * shape.membership(x)];
+    if let Some(corners) = shape.corners() {
         let within = corners.into_iter().filter(|(x, _)| *x > low && *x < high);
-        let within = within.flat_map(|(x, degree)| [x, degree * term.height]);
+        let within = within.flat_map(|(x, degree)| [x, degree * height]);
         return at(low).into_iter().chain(within).chain(at(high)).collect();
     }
     let scale = fuzzy::drawing::Scale::new(low, high);

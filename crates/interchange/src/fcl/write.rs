@@ -310,7 +310,7 @@ fn rule_block(draft: &mut TextDraft, block: &Rules<'_>, number: &mut usize) {
 /// The keywords in capitals, as IEC 61131-7 writes them.
 fn keywords(rule: &str) -> String {
     let words = rule.split(' ').map(|word| match word {
-        "if" | "is" | "and" | "or" | "then" | "with" | "not" => word.to_uppercase(),
+        "if" | "is" | "and" | "or" | "then" | "with" | "not" => word.to_ascii_uppercase(),
         _ => word.to_owned(),
     });
     words.collect::<Vec<_>>().join(" ")
