@@ -191,7 +191,10 @@ fn a_finding_whose_interval_contains_its_threshold_tells_so() {
     let interval = finding.risk_interval.unwrap();
     assert!(interval.low_pct <= finding.value_pct && finding.value_pct <= interval.high_pct);
     for (low_pct, ends) in [
-        (finding.threshold_pct - 6.0, "more samples could change this."),
+        (
+            finding.threshold_pct - 6.0,
+            "more samples could change this.",
+        ),
         (finding.threshold_pct, " %."),
     ] {
         let finding = Finding {
