@@ -178,6 +178,10 @@ export interface FlightFinding {
   motor: MotorFinding | null;
   /** The cause of the risk; null if no rule raised it, as for a notice or an interpolated risk. */
   cause: Cause | null;
+  /** The lower end in %. */
+  risk_low?: number;
+  /** The upper end in %. */
+  risk_high?: number;
   /** The output that is the risk, if it is one of `Profile::other_risks`. */
   risk_output?: string;
   /** The name of the motor's output in the log. */
