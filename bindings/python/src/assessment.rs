@@ -34,6 +34,8 @@ pub(crate) struct AssessmentData {
     flight: Py<FlightData>,
     loaded: Arc<Loaded>,
     step_s: Option<f64>,
+    /// Whether the steps have intervals of the risk.
+    with_intervals: bool,
     /// The flight and its assessment; after unpickling, created again at the first use.
     subject: OnceLock<Arc<Subject>>,
     /// Verdict, findings and summary in JSON, as they are pickled.
@@ -46,12 +48,15 @@ impl AssessmentData {
             return Ok(subject);
         }
         let flight = self.flight.get();
-        let (name, step_s) = (flight.name.clone(), self.step_s);
+        let (name, step_s, with_intervals) =
+            (flight.name.clone(), self.step_s, self.with_intervals);
         let (flight, of) = (Arc::clone(flight.flight(py)?), Arc::clone(&self.loaded));
         let subject = interruptible(py, move || Subject {
             assessed: match step_s {
-                Some(step_s) => assess_with_intervals(&flight, &of.estimator, step_s),
-                None => assess(&flight, &of.estimator, None),
+                Some(step_s) if with_intervals => {
+                    assess_with_intervals(&flight, &of.estimator, step_s)
+                }
+                step_s => assess(&flight, &of.estimator, step_s),
             },
             name,
             flight,
@@ -69,12 +74,13 @@ impl AssessmentData {
 #[pymethods]
 impl AssessmentData {
     #[new]
-    #[pyo3(signature = (flight, profile, step_s, json_text = None))]
+    #[pyo3(signature = (flight, profile, step_s, json_text = None, *, with_intervals = true))]
     fn new(
         flight: &Bound<'_, FlightData>,
         profile: &Profile,
         step_s: Option<f64>,
         json_text: Option<String>,
+        with_intervals: bool,
     ) -> PyResult<Self> {
         if let Some(step_s) = step_s.filter(|step_s| step_s.is_nan() || *step_s <= 0.0) {
             let help = "write a number of seconds above 0, or None for no steps".to_owned();
@@ -85,6 +91,7 @@ impl AssessmentData {
             flight: flight.clone().unbind(),
             loaded: Arc::clone(&profile.loaded),
             step_s,
+            with_intervals,
             subject: OnceLock::new(),
             json_text,
         };

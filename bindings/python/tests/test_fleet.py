@@ -392,18 +392,18 @@ def test_the_command_line_on_all_cores(logs, tmp_path, capsys):
 
 
 def test_a_log_that_ends_its_worker_is_found(logs, tmp_path, monkeypatch):
-    """The workers' `flagred.assess` kills them at one of the logs, like running out of memory."""
+    """The workers' `read_log` kills them at one of the logs, like running out of memory."""
     plugin = tmp_path / "plugin"
     plugin.mkdir()
     (plugin / "sitecustomize.py").write_text(
         "import os, flagred\n"
         "import flagred.fleet.rows as rows\n"
-        "assess = rows.assess\n"
+        "read_log = rows.read_log\n"
         "def lethal(log, *arguments, **named):\n"
         "    if str(log).endswith('3.csv'):\n"
         "        os.kill(os.getpid(), 9)\n"
-        "    return assess(log, *arguments, **named)\n"
-        "rows.assess = lethal\n"
+        "    return read_log(log, *arguments, **named)\n"
+        "rows.read_log = lethal\n"
     )
     path = os.pathsep.join(filter(None, [str(plugin), os.environ.get("PYTHONPATH")]))
     monkeypatch.setenv("PYTHONPATH", path)
@@ -425,15 +425,15 @@ def test_a_full_disk_stops_the_run_before_logs_are_read_again(logs, tmp_path, mo
         "import errno, flagred\n"
         "import flagred.fleet.rows as rows\n"
         "from flagred.fleet.storage import Place\n"
-        "assess, write = rows.assess, Place.write\n"
+        "read_log, write = rows.read_log, Place.write\n"
         "def counted(log, *arguments, **named):\n"
         f"    open({str(tmp_path / 'read')!r}, 'a').write(f'{{log}}\\n')\n"
-        "    return assess(log, *arguments, **named)\n"
+        "    return read_log(log, *arguments, **named)\n"
         "def full(place, path, content):\n"
         "    if '/steps/' in path:\n"
         "        raise OSError(errno.ENOSPC, 'No space left on device')\n"
         "    write(place, path, content)\n"
-        "rows.assess, Place.write = counted, full\n"
+        "rows.read_log, Place.write = counted, full\n"
     )
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, [str(plugin), os.environ.get("PYTHONPATH")])))
     arguments = ["assess", str(logs), "--recursive", "--out", str(tmp_path / "out"), "--workers", "2"]
@@ -451,7 +451,7 @@ def test_a_disk_without_space_is_noticed_before_logs_are_read(logs, tmp_path, mo
     listed = [(str(logs), log) for log in open_place(str(logs)).logs(False, fleet.storage.LOGS)]
     (shard,) = shards(listed, 1 << 30)
     monkeypatch.setattr(shutil, "disk_usage", lambda path: shutil._ntuple_diskusage(10**9, 10**9 - 5000, 5000))
-    monkeypatch.setattr("flagred.fleet.rows.assess", lambda *arguments, **named: pytest.fail("a log was read"))
+    monkeypatch.setattr("flagred.fleet.rows.read_log", lambda *arguments, **named: pytest.fail("a log was read"))
     with pytest.raises(OSError, match="only 5000 bytes are left on the disk"):
         fleet.process(shard, job)
 

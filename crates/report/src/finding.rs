@@ -129,6 +129,7 @@ impl<'a> Teller<'a> {
             raised += &format!(", FAIL at {}", clock.at(failed_s));
         }
         parts.push(raised);
+        parts.extend(finding.uncertainty());
         if let (Some(motor), Some(found)) = (self.motor(finding), &finding.motor) {
             parts.push(match finding.is_of_risk() {
                 true => format!(

@@ -73,7 +73,6 @@ impl Finding {
                 text += &format!(" Motor {number} was closest to its {limit} limit.");
             }
             text += &self.reached();
-            text += &self.straddling();
         }
         Words {
             code,
@@ -97,21 +96,16 @@ impl Finding {
         format!(" The {}{of} reached {:.0} %.", self.measure, self.value_pct)
     }
 
-    /// Whether the interval of the highest risk contains the threshold, so that more samples could change the level.
-    pub fn is_uncertain(&self) -> bool {
-        let interval = self.risk_interval.as_ref();
-        interval.is_some_and(|interval| interval.low_pct < self.threshold_pct)
-    }
-
-    /// The sentence about a risk that is uncertain; empty if it is not.
-    fn straddling(&self) -> String {
-        match &self.risk_interval {
-            Some(RiskInterval { low_pct, high_pct }) if self.is_uncertain() => format!(
-                " The threshold of {} % is within the interval of the risk, {low_pct:.0} to {high_pct:.0} %: more samples could change this.",
+    /// The sentence about a threshold within the interval of the highest risk: more samples could change the level. `None` if the
+    /// interval is unknown or above the threshold.
+    pub fn uncertainty(&self) -> Option<String> {
+        let RiskInterval { low_pct, high_pct } = self.risk_interval?;
+        (low_pct < self.threshold_pct).then(|| {
+            format!(
+                "the threshold of {} % is within the interval of the risk, {low_pct:.0} to {high_pct:.0} %",
                 number(self.threshold_pct)
-            ),
-            _ => String::new(),
-        }
+            )
+        })
     }
 
     /// A text with its placeholders in braces replaced by the numbers of the finding.

@@ -337,7 +337,13 @@ class FlightData:
 @disjoint_base
 class AssessmentData:
     def __new__(
-        cls, flight: FlightData, profile: Profile, step_s: float | None, json_text: str | None = None
+        cls,
+        flight: FlightData,
+        profile: Profile,
+        step_s: float | None,
+        json_text: str | None = None,
+        *,
+        with_intervals: bool = True,
     ) -> Self: ...
     def _json(self) -> str: ...
     def _step_s(self) -> float | None: ...

@@ -190,24 +190,25 @@ fn a_finding_whose_interval_contains_its_threshold_tells_so() {
         .unwrap();
     let interval = finding.risk_interval.unwrap();
     assert!(interval.low_pct <= finding.value_pct && finding.value_pct <= interval.high_pct);
-    for (low_pct, ends) in [
-        (
-            finding.threshold_pct - 6.0,
-            "more samples could change this.",
-        ),
-        (finding.threshold_pct, " %."),
-    ] {
+    let of = |low_pct: f64| {
+        let risk_interval = Some(RiskInterval {
+            low_pct,
+            high_pct: 90.0,
+        });
         let finding = Finding {
-            risk_interval: Some(RiskInterval {
-                low_pct,
-                high_pct: 90.0,
-            }),
+            risk_interval,
             ..finding.clone()
         };
-        let text = finding.words(&estimator).text;
-        assert!(text.ends_with(ends), "{text}");
-        assert_eq!(text.contains("to 90 %"), finding.is_uncertain(), "{text}");
-    }
+        finding.uncertainty()
+    };
+    let threshold_pct = finding.threshold_pct;
+    let text = of(threshold_pct - 6.0).unwrap();
+    let within = format!(
+        "is within the interval of the risk, {} to 90 %",
+        threshold_pct - 6.0
+    );
+    assert!(text.ends_with(&within), "{text}");
+    assert_eq!(of(threshold_pct), None);
     // Without steps nothing is computed.
     let mut assessor = Assessor::new(&estimator, Craft::new(4), None).unwrap();
     rising(50.0, |sample| {

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from .. import Profile, __version__, assess, loads
+from .. import Profile, __version__, loads, read_log
+from .._flight import assessed
 from ..types import Assessment, Flight
 from .schema import FINDINGS, FLIGHTS, STEPS
 from .shards import Job
@@ -57,7 +58,7 @@ def told(shown: str, log: Log, job: Job) -> dict[str, Any]:
 
 def add(rows: dict[str | None, Rows], row: dict[str, Any], log: str | bytes, job: Job) -> None:
     """Assesses a log, by its path or its content, and adds its rows to those of its month."""
-    assessment = assess(log, job.profile, step_s=job.step_s)
+    assessment = assessed(read_log(log), job.profile, job.step_s, with_intervals=False)
     row |= _flight(assessment)
     row["vehicle"] = row["vehicle"] or row["vehicle_id"]
     start = row["start_utc"]
