@@ -52,7 +52,7 @@ def ours(binary, log, runs, signals):
 
 
 def by_pymavlink(log, types):
-    """Rows of the first of these types and of ATT or ATTITUDE."""
+    """The number of messages of each of these types."""
     from pymavlink import mavutil
 
     counts = dict.fromkeys(types, 0)

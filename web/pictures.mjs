@@ -24,7 +24,7 @@ for (const [room, fill] of Object.entries(rooms)) {
       await page.locator('#said').evaluate((said) => (said.textContent = ''));
       if (device === 'phone') await page.locator('.map').evaluate((map) => map.scrollIntoView());
     }
-    // What moves comes to rest.
+    // Wait until all animations have ended.
     await page.waitForTimeout(1000);
     await page.screenshot({ path: join(folder, `page-${room}-${device}.png`) });
     if (room === 'rules' && device === 'desktop') {

@@ -16,7 +16,7 @@ fn main() {
 
 const POINTS: usize = 1024;
 
-/// One call at each of 1024 points; times are those of all calls, the throughput counts evaluations.
+/// Evaluates each of 1024 points in a call. The time is that of all calls; the throughput counts evaluations.
 fn single(bencher: Bencher<'_, '_>, model: &Model) {
     let engine = Engine::new(model).unwrap();
     let mut scratch = engine.scratch();
@@ -66,7 +66,7 @@ fn single_c_four_inputs(bencher: Bencher<'_, '_>) {
     single(bencher, &four_inputs());
 }
 
-/// Intervals of the inputs, a twentieth of their range wide, at each of 16 points.
+/// Evaluates intervals around each of 16 points; the interval of an input is a twentieth of its range wide.
 #[divan::bench]
 fn intervals_b_published(bencher: Bencher<'_, '_>) {
     let engine = Engine::new(&published(false)).unwrap();

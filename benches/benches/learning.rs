@@ -64,7 +64,7 @@ fn cross_validate_100_000_rows_ten_times(bencher: Bencher<'_, '_>) {
     });
 }
 
-/// Every third rule is missing; each cell is evaluated, or filled, and read.
+/// Evaluates and fills the map of a rule set in which every third rule is missing, and reads each cell.
 #[divan::bench(sample_count = 1, args = [GapMethod::Nearest, GapMethod::INVERSE_DISTANCE, GapMethod::ThinPlate, GapMethod::Harmonic])]
 fn fill_a_map_of_51_to_the_4(bencher: Bencher<'_, '_>, method: GapMethod) {
     let mut model = four_inputs();

@@ -27,15 +27,15 @@ fn estimator(name: &str) -> Estimator {
     }
 }
 
-/// Motors that compensate gusts.
+/// The commands of motors that compensate gusts.
 fn commands(i: u32) -> [f64; MOTORS] {
     let t_s = f64::from(i) * 0.02;
     let gust = (t_s * 1.3).sin().max(0.0) * 0.4;
     std::array::from_fn(|n| (0.55 + gust * (t_s * 9.0 + n as f64).sin()).clamp(0.0, 1.0))
 }
 
-/// A run of samples after enough samples to fill the windows; times are those of a run, the throughput counts
-/// samples.
+/// Measures a run of samples after enough samples to fill the windows. The time is that of the run; the throughput
+/// counts samples.
 fn run(bencher: Bencher<'_, '_>, mut push: impl FnMut(&Sample<'_>)) {
     let flight: Vec<[f64; MOTORS]> = (0..SAMPLES).map(commands).collect();
     let mut i = 0_u32;

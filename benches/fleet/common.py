@@ -95,7 +95,7 @@ class Cluster:
         return self.started[0].pid
 
     def worker_pids(self) -> list[int]:
-        """The processes that work, which their supervisors started."""
+        """The ids of the worker processes, without those of the supervisors that started them."""
         watchers = {process.pid for process in self.started[1:]}
         return [pid for pid, parent, command in processes() if parent in watchers and "spawn_main(" in command]
 
@@ -123,7 +123,7 @@ def processes() -> list[tuple[int, int, str]]:
 
 
 def driver(arguments: list[str], shard_bytes: int | None = None) -> list[str]:
-    """The command line of fleets as a process; smaller shards create more moments at which a process can be killed."""
+    """The command to run `flagred.fleet` as a process. With small shards there are more moments at which to kill it."""
     if shard_bytes is None:
         return [sys.executable, "-m", "flagred.fleet", *arguments]
     program = f"import sys, flagred.fleet.shards as shards; shards.MOST_BYTES = {shard_bytes}\n"

@@ -32,7 +32,8 @@ AFTER = 20
 
 
 def chance_to_warn(share: float, wind: np.ndarray) -> np.ndarray:
-    """The probability of each flight, larger in strong wind, with this average at a wind of 4 m/s."""
+    """The probability that each flight warns. It rises with the wind; over typical winds (4 m/s on average), its mean is
+    `share`."""
     typical = np.random.default_rng(0).gamma(4, 1, 20_000)
     low, high = -20.0, 20.0
     for _ in range(60):

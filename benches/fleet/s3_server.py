@@ -1,8 +1,8 @@
 """moto's S3 server with the failures of a real one: 503 for some time, and slow reads. Requires `pip install 'moto[server]'`.
 
-A key that contains `busy` answers 503 to its first eight reads, one that contains `down` to all until the file
-`recovered` is in the folder of the second argument; one in forty reads of others is answered with 503. A read of a key
-that contains `slow` takes three seconds. The file `counts.json` in that folder counts the answers.
+The answer is 503 to the first eight reads of a key that contains `busy`; to all reads of a key that contains `down`, until
+the file `recovered` is in the folder of the second argument; and to one in forty of all other reads. A read of a key that
+contains `slow` takes three seconds. The file `counts.json` in that folder counts reads, listings and answers of 503.
 """
 
 from __future__ import annotations

@@ -30,7 +30,8 @@ def patients():
 
 
 def series():
-    """A chaotic series (Mackey and Glass 1977), six steps ahead of four of its values, as for ANFIS (Jang 1993)."""
+    """Four values of a chaotic series (Mackey and Glass 1977), six steps apart, to predict the value six steps later, as for
+    ANFIS (Jang 1993)."""
     step, delay = 0.1, 170
     x = [1.2]
     slope = lambda x, past: 0.2 * past / (1 + past**10) - 0.1 * x
@@ -48,7 +49,7 @@ def series():
 
 
 def bells(x, names):
-    """The initial rule set of ANFIS: two bells for each input, a line for each combination."""
+    """The initial rule set of ANFIS: two bells for each input, and a rule with a linear consequent for each combination."""
     low, high = x.min() - 0.1, x.max() + 0.1
     bell = lambda center: f"{{bell: {{center: {center}, width: {(high - low) / 2}, slope: 2}}}}"
     inputs = "".join(f"  {name}: {{range: [{low}, {high}], terms: {{low: {bell(low)}, high: {bell(high)}}}}}\n" for name in names)

@@ -106,8 +106,8 @@ pub fn published(weighted: bool) -> Model {
     model
 }
 
-/// (b2): as (b), with interval type-2 terms. The feet of the upper membership functions are a tenth of the distance of two
-/// terms further outside, those of the lower ones, whose height is 0.9, as far inside.
+/// (b2): as (b), with interval type-2 terms. The feet of the upper membership functions are moved outwards by a tenth of the
+/// distance between two terms. The feet of the lower ones are moved inwards by the same distance, and their height is 0.9.
 pub fn published_type2() -> Model {
     let mut model = published(false);
     let widen = |variable: &mut Variable, by: f64| {

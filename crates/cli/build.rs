@@ -4,7 +4,7 @@ use std::{env, fs, io::Write, path::PathBuf};
 
 use flate2::{Compression, write::GzEncoder};
 
-/// The environment variable that names another page than that of `web/build`.
+/// The environment variable with the path of a page that is embedded instead of the one from `web/build`.
 const VARIABLE: &str = "FLAGRED_STUDIO_PAGE";
 
 fn main() -> std::io::Result<()> {

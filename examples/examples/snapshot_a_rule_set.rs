@@ -1,4 +1,4 @@
-//! Keep a picture of your rule set beside your tests: a change of what it decides then shows in review.
+//! Keep a picture of your rule set beside your tests, so that changed decisions are visible in review.
 //!
 //! `cargo run -p flagred-examples --example snapshot_a_rule_set`
 

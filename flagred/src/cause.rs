@@ -10,15 +10,14 @@ pub struct Proposition {
     pub rule: u32,
     /// The index of the input in the profile; for an output that is read, the number of inputs plus its index.
     pub input: u32,
-    /// The index of the proposition's degree among those of all literals, if rules read degrees by
-    /// index.
+    /// The index of the proposition's degree among the degrees of all literals, if rules read degrees by index.
     pub literal: u32,
 }
 
-/// The cause of the risk when a level was reached, in indices. The rule is the one that raises the risk most among
-/// those that fired ([`Table::raised_by`](fuzzy::table::Table::raised_by)). The proposition is the one that the fewest
-/// rules share, among the propositions of its antecedent that are true. If that one is about an output, the rule is the
-/// one that contributes most to the term of that output.
+/// The cause of the risk when a level was reached, in indices. Of the rules that fired, the cause is the one that raises
+/// the risk most ([`Table::raised_by`](fuzzy::table::Table::raised_by)). Of the true propositions in its antecedent, the
+/// cause is the one that the fewest rules share. If this proposition is about an output, the cause is instead the rule
+/// that contributes most to the term of this output, and so on until the proposition is about an input.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cause {
     /// The index of the rule in the rule set.
@@ -27,8 +26,8 @@ pub struct Cause {
     pub input: usize,
     /// The value of that input.
     pub value: f64,
-    /// The index of the proposition in [`Plan::propositions`](crate::board::Plan::propositions). Exported profiles have
-    /// its words.
+    /// The index of the proposition in [`Plan::propositions`](crate::board::Plan::propositions). Exported profiles contain
+    /// the texts for the pilot under the same index.
     pub proposition: usize,
 }
 
@@ -49,7 +48,7 @@ pub(crate) enum RuleQuery {
 
 impl Propositions<'_> {
     /// Returns the cause of a risk at values of the inputs, in the order of the profile. `ask` finds the rule of an
-    /// output, and passes it with the degrees of the literals to a function that picks the proposition. If the
+    /// output. It passes the rule and the degrees of the literals to a function, which selects the proposition. If the
     /// proposition is about an output, the search continues with that output. The rule of the cause is counted over all
     /// stages.
     pub(crate) fn cause(

@@ -41,14 +41,14 @@ pub enum Statistic {
     Min,
     /// The largest value.
     Max,
-    /// The latest value; over motors, their mean.
+    /// The latest value; for a signal of motors, the mean over the motors.
     Last,
-    /// The share of time spent below a value, in [0, 1]; over motors, the mean of their shares.
+    /// The share of time spent below a value, in [0, 1]; for a signal of motors, the mean over the motors.
     ShareBelow(f64),
-    /// The share of time spent above a value, in [0, 1]; over motors, the mean of their shares.
+    /// The share of time spent above a value, in [0, 1]; for a signal of motors, the mean over the motors.
     ShareAbove(f64),
-    /// The standard deviation without noise: `sqrt(max(0, std^2 - noise^2))`, both of the means of bins. It measures
-    /// slow changes, which successive bins share.
+    /// The standard deviation without noise: `sqrt(max(0, std^2 - noise^2))`, both computed from the means of bins. It
+    /// measures changes that are slower than a bin.
     StdLessNoise,
     /// The standard deviation of the noise: `sqrt(mean(step^2) / 2)`, with the steps between the means of successive
     /// bins of 0.1 s (between successive samples if they are further apart). For white noise `noise = std`, for slow
@@ -298,8 +298,8 @@ impl Input {
     }
 }
 
-/// The division that makes an input `x / max(per, at_least)` of its statistic `x` and another input, which is not a
-/// ratio itself.
+/// The division of an input by another input. With the statistic `x` of the input, its value is
+/// `x / max(per, at_least)`. The other input must not be a ratio itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ratio {
     /// The index of the input to divide by.

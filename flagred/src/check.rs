@@ -201,7 +201,8 @@ fn compile(
 }
 
 /// Finds levels of another risk without a threshold for the elevated risk, although the same level of the first risk
-/// has one: a level that is written replaces the whole level, so parts that it omits do not apply.
+/// has one. A level that is written for another risk replaces the level of the first risk as a whole, so the omitted
+/// threshold does not apply.
 fn dropped(first: &Profile, other: &Profile, place: &[&str], at: &Places) -> Vec<Diagnostic> {
     let levels = [
         ("warn", &first.verdict.warn, &other.verdict.warn),
@@ -296,8 +297,9 @@ fn thresholds(estimator: &Estimator, place: &[&str], at: &Places, found: &mut Ve
     }
 }
 
-/// The window and the wait before a level is raised above which a warning is given, in seconds.
+/// The longest window without a warning, in seconds.
 const LONGEST_WINDOW_S: f64 = 600.0;
+/// The longest wait before a level is raised without a warning, in seconds.
 const LONGEST_WAIT_S: f64 = 30.0;
 
 /// Finds windows and waits that are so long that their unit is probably wrong.
@@ -443,7 +445,7 @@ fn signal(
             .or_else(|| nearest(name, Signal::names()))
     {
         let message = format!("no log format has a signal `{name}`");
-        // For example `wind`, of which there are several.
+        // For example `wind`: several known signals begin with `wind_`.
         let start = format!("{name}_");
         let longer = known
             .iter()

@@ -48,7 +48,7 @@ struct Compiled {
     propositions: Vec<Proposition>,
     /// The inputs and terms of the propositions, by name.
     said: Vec<AntecedentProposition>,
-    /// The estimators of the other risks of the profile, each as if it were the only one.
+    /// The estimators of the other risks of the profile, each compiled as if its risk were the only one.
     others: Vec<Estimator>,
 }
 
@@ -90,7 +90,7 @@ pub enum EstimatorError {
         /// The upper end of the range.
         high: f64,
     },
-    /// The value of an input for a vehicle without its signal is outside the range of the input.
+    /// The value that is assumed for an input if its signal is missing is outside the range of the input.
     #[error(
         "`if_missing` of input `{input}` is {value}, but the range of the input is {low} to {high}"
     )]

@@ -37,15 +37,14 @@ pub use serialize::{NamedStep, Steps, VerdictWord};
 
 /// The share of the time in the air for which the risk must be known for a verdict of GOOD.
 const KNOWN_SHARE: f64 = 0.5;
-/// From this share of the time in the air on, a reason counts as one for the whole flight.
+/// A reason that applies for at least this share of the time in the air is reported without its share.
 const WHOLE_SHARE: f64 = 0.95;
 
-/// The number of findings that are kept of a flight, the most severe ones.
+/// The maximum number of findings that are kept per flight. The most severe ones are kept.
 const MOST_FINDINGS: usize = 1000;
-/// The number of steps that are kept of a flight: seven hours at 10 Hz.
+/// The maximum number of steps that are kept per flight: seven hours at 10 Hz.
 pub const MOST_STEPS: usize = 250_000;
-/// While a landing could still withdraw judged risks, those closer together than this, in seconds,
-/// are merged.
+/// Judged risks that a landing could still withdraw are merged if they are closer together than this, in seconds.
 const PENDING_S: f64 = 1e-4;
 
 /// The margin below which a motor counts as saturated.
@@ -120,7 +119,7 @@ struct Flight {
     risk_times_s: f64,
     motor_samples: u64,
     saturated: u64,
-    /// For how long the risk was unknown, in seconds, by reason.
+    /// The reasons why the risk was unknown, each with its total time in seconds.
     unknown: Vec<(Unknown, f64)>,
     losses: Losses,
     /// The indices of the inputs whose values were assumed in the air.
@@ -277,7 +276,7 @@ impl Assessor {
             flight.widen_steps();
         }
         let step_s = flight.widened_step_s.unwrap_or(step_s);
-        // On a grid of `step_s`; every sample if samples are further apart.
+        // Steps are on a grid of `step_s`. If samples are further apart, every sample is a step.
         flight.next_step_s = match flight.next_step_s + step_s {
             next_s if next_s > update.t_s => next_s,
             _ => update.t_s + step_s,
@@ -401,7 +400,7 @@ impl Flight {
                 last.held_s += risk.held_s;
                 last.risk_times_s += risk.risk_times_s;
                 last.risk_pct = last.risk_pct.max(risk.risk_pct);
-                // An unknown value is smaller than any number.
+                // `None` (unknown) compares as smaller than any number.
                 if risk.elevated_risk_pct > last.elevated_risk_pct {
                     last.elevated_risk_pct = risk.elevated_risk_pct;
                 }

@@ -45,7 +45,7 @@ pub(crate) struct Follower {
     falls: bool,
     last_high_s: Option<f64>,
     last_known_s: Option<f64>,
-    /// During an alarm, the last time at which the motors were not known to work as before it, in
+    /// During and after an alarm, the last time at which the motors were not known to work as before the alarm, in
     /// seconds.
     in_doubt_s: Option<f64>,
 }
@@ -275,8 +275,8 @@ impl Follower {
         };
         let step = self.alert.push(now, room.motors);
         self.doubt(t_s);
-        // Only one of the two findings can end with a sample: after the state was reset, raising a level again takes a
-        // while.
+        // This cannot replace a finding that ended because the state was reset: raising a level again takes a while, so no
+        // second finding can end with the same sample.
         if step.ended.is_some() {
             ended[0] = step.ended;
         }
@@ -502,7 +502,7 @@ pub(crate) fn reading(
     input: usize,
 ) -> Result<f64, Unknown> {
     let observation = value(plan, seen, input).ok_or(Unknown::NoValue { input })?;
-    // A window that lacks about the time of one sample counts as full.
+    // A window counts as full if it lacks at most 1 % of its time.
     let needed_s = sampling.warm_up_s.min(observation.window_s) * 0.99;
     match observation.samples {
         Some(_) if observation.covered_s < needed_s => Err(Unknown::WarmingUp { input }),

@@ -154,8 +154,8 @@ fn finish<E>(
     })
 }
 
-/// The findings about a profile and the rule set that it names, for the author of a profile: [`fit`] and
-/// [`check::outvoted`].
+/// Returns the findings of [`fit`] and [`check::outvoted`], for the author of a profile, and the estimator if the profile
+/// can be used.
 #[doc(hidden)] // For the programs of this repository.
 pub fn examine(profile: &Source, rules: &Source) -> (Findings, Option<Estimator>) {
     let (mut findings, estimator) = fit(profile, rules);
@@ -213,7 +213,7 @@ fn compiled<E>(profile: &Profile, file: String, source: Source) -> Result<Source
     }
 }
 
-/// Reads a profile without its rule set. Returns also its source and, for a file, the folder it is in.
+/// Reads a profile without its rule set. Also returns its source and, for a file, the folder that contains it.
 ///
 /// # Errors
 /// As [`load`].

@@ -31,23 +31,23 @@ pub struct Motor {
     pub(crate) command: f64,
     /// The command without the part that commands yaw.
     pub(crate) less_yaw: f64,
-    /// The yaw factor of the motor, and the contribution of one unit of its command to each effort;
-    /// zeros if the geometry is unknown.
+    /// The yaw factor of the motor; 0 if the geometry is unknown.
     yaw: f64,
+    /// The contribution of one unit of the command to each effort; zeros if the geometry is unknown.
     share: Efforts,
     /// The index of the opposite motor; `u32::MAX` if there is none or the geometry is unknown.
     pub(crate) opposite: u32,
-    /// The sum of the commands in the current bin, and the mean of the commands in the previous
-    /// bin; NaN is unknown.
+    /// The sum of the commands in the current bin; NaN if one of them is unknown.
     bin_sum: f64,
+    /// The mean of the commands in the previous bin; NaN is unknown.
     bin_before: f64,
-    /// The difference between the command and the mean of all motors, averaged over the last
-    /// seconds and as a trim.
+    /// The difference between the command and the mean of all motors, averaged over the last seconds.
     pub(crate) difference: Average,
+    /// The same difference while the flight is calm, averaged over a longer time.
     pub(crate) trim: Average,
     /// The time for which the command has been 0, in seconds.
     pub(crate) at_zero_s: f64,
-    /// The margins of the motor while a level was being reached, since it was first reached.
+    /// The margins of the motor while a level is reached. They are recorded anew when WARN or FAIL is first reached.
     pub(crate) record: MotorRecord,
 }
 
@@ -271,8 +271,8 @@ impl Bin {
         samples: 0,
     };
 
-    /// The noise of a bin that this sample completes: `sqrt(mean over motors of (step^2) / 2)`, with the steps from the
-    /// previous bin. NaN if the step of a motor is unknown.
+    /// Adds a sample to its bin. If this completes the previous bin, returns the noise of that bin: `sqrt(mean over motors
+    /// of (step^2) / 2)`, with the steps from the bin before it. Otherwise, or if the step of a motor is unknown, NaN.
     fn begin(&mut self, t_s: f64, motors: &mut [Motor]) -> f64 {
         let index = bin_of(t_s);
         let mut noise = f64::NAN;

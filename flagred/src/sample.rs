@@ -104,12 +104,12 @@ pub enum Unknown {
     NoRule,
     /// The command of a motor is unknown.
     NoCommand {
-        /// The first such motor, counted from 0.
+        /// The first motor without a command, counted from 0.
         motor: usize,
     },
     /// The command of a motor is so far outside [0, 1] that it has another unit.
     CommandOutside {
-        /// The first such motor, counted from 0.
+        /// The first motor with a command outside, counted from 0.
         motor: usize,
         /// The command of that motor.
         command: f64,

@@ -37,18 +37,18 @@ pub enum Signal {
     /// The thrust effort.
     ThrustEffort,
     /// The noise of the commands, every 0.1 s: `sqrt(mean over motors of (step^2) / 2)`, with the steps between the
-    /// means of successive times of 0.1 s.
+    /// means of successive bins of 0.1 s.
     CommandNoise,
     /// Another signal of the flight by its name, such as `battery_v`.
     Named(String),
-    /// The difference `a - b` of two such signals. If both names end in `_deg`, the shorter way around, in [-180, 180).
+    /// The difference `a - b` of two named signals. If both names end in `_deg`, it is the shorter way around, in [-180, 180).
     Difference {
         /// The minuend.
         a: String,
         /// The subtrahend.
         b: String,
     },
-    /// The ratio `a / b` of two such signals.
+    /// The ratio `a / b` of two named signals.
     Ratio {
         /// The dividend.
         a: String,
@@ -57,7 +57,7 @@ pub enum Signal {
         /// The ratio is unknown while `|b|` is below this, and always when `b` is 0.
         unknown_below: f64,
     },
-    /// The product `a b` of two such signals.
+    /// The product `a b` of two named signals.
     Product {
         /// The first factor.
         a: String,

@@ -266,7 +266,7 @@ pub struct Finding {
     pub severity: Level,
     /// The time at which the level was first reached, in seconds.
     pub from_s: f64,
-    /// The time at which the level was first raised, in seconds: `after_s` of that level later.
+    /// The time at which the level was first raised, in seconds: `after_s` of the level after it was first reached.
     pub raised_s: f64,
     /// The time at which the level was raised to FAIL, in seconds; `None` if it was not.
     pub failed_s: Option<f64>,

@@ -341,7 +341,7 @@ pub fn nearest<'a>(
     })
 }
 
-/// Whether a name contains all parts of another name with several parts: `battery_remaining_pct` those of `battery_pct`.
+/// Returns whether a name contains all of several parts: `battery_remaining_pct` contains those of `battery_pct`.
 fn has_parts(name: &[char], parts: &[char]) -> bool {
     let mut parts = parts.split(|c| *c == '_').peekable();
     let several = parts

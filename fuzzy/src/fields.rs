@@ -37,8 +37,9 @@ pub(crate) struct Fields {
     key: String,
 }
 
-/// A serializer that accepts only a number, and one that accepts only a name.
+/// A serializer that accepts only a number.
 struct Number;
+/// A serializer that accepts only a name.
 struct Name;
 
 /// Defines the methods of a serializer that reject the listed types.

@@ -95,7 +95,8 @@ pub enum MembershipFunction {
         /// The value at which the degree is 1.
         at: f64,
     },
-    /// Straight lines between points. Beyond them it keeps the first and the last degree. fuzzylite's `Discrete`.
+    /// Straight lines between points. Before the first and after the last point, the degree is constant. fuzzylite's
+    /// `Discrete`.
     Piecewise {
         /// The points `(x, degree)`, with non-decreasing x. Two points with the same x are a step.
         points: Vec<(f64, f64)>,
@@ -292,7 +293,7 @@ form::forms! {
 
 #[cfg(feature = "alloc")]
 impl MembershipFunction {
-    /// Returns its parameters in the order of a list: name, role and value. Piecewise and linear shapes and formulas
+    /// Returns the parameters in the order of a list: name, role and value. Piecewise and linear shapes and formulas
     /// have no fixed number of parameters, and return none.
     pub fn parameters(&self) -> Vec<(&'static str, Role, f64)> {
         match self.parts() {

@@ -56,7 +56,7 @@ fn a_tsukamoto_value_is_where_the_term_has_the_degree() {
             assert!((there - w).abs() < 1e-12, "{shape}: {w} at {z} is {there}");
         }
         for (w, z, there) in places(shape, "[0, 10]", 0.8) {
-            // Degrees that the term does not reach give the end of its slope; a sigmoid has none.
+            // For degrees above the height of the term, the value is the end of its slope; a sigmoid has no such end.
             if w < 0.8 || !shape.starts_with("sigmoid") {
                 let found = (there - w.min(0.8)).abs();
                 assert!(found < 1e-12, "{shape}: {w} at {z} is {there}");

@@ -146,7 +146,7 @@ def shape(name, p):
         return polyline([(x, mpf(y)) for x, y in straight[name](*p)])
     degree, kinks = curved[name](*p)
     if name in ("gaussian", "bell", "cosine", "spike", "semi_ellipse", "sigmoid", "sigmoid_difference", "sigmoid_product"):
-        # 1 at a single position at most; near it, 80 digits would round to 1.
+        # These shapes reach 1 at a single position at most, but near it, 80 digits would round to 1.
         return lambda x: min(degree(x), 1 - mpf("1e-78")), kinks
     return degree, kinks
 
@@ -179,7 +179,7 @@ AND = {
     "nilpotent_minimum": nilpotent_minimum,
 }
 IMPLICATION = AND | {
-    # Of a term that it cuts off, it keeps only intervals with the degree 1.
+    # If the strength cuts off a term, only intervals of the term with the degree 1 remain.
     "drastic": lambda h, m: m if h >= 1 - LEAST else h if m == 1 else mpf(0),
 }
 OR = {
@@ -380,7 +380,8 @@ class AggregatedSet:
                         x = root(slope, a, b)
                         tops.append((x, x, self.degree(x)))
                 ends = (slopes[0] < 0, slopes[-1] > 0)
-            # A peak at the cut: the set rises to it, or steps down from there, and falls from it, or steps down.
+            # There is a peak at the cut between two pieces if the set rises to it and then falls or steps down, or if it
+            # steps up at the cut and then falls.
             left, right = before[0], ys[0]
             is_step = abs(left - right) > mpf("1e-35") * max(left, right)
             if (left > right if is_step else ends[0]) and before[1] or (ends[0] and is_step and right > left):
@@ -416,7 +417,7 @@ def number(document, values):
 
 
 def evaluate(model, point, rounding=mpf(1)):
-    """The value of the one output of a rule set at a point, with weights times a number close to 1."""
+    """The value of a rule set's only output at a point, with all weights multiplied by `rounding`, a number close to 1."""
     ((output_name, output),) = model["outputs"].items()
     operators, values = model["operators"], {}
     for (name, variable), x in zip(model["inputs"].items(), point):

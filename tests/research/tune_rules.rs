@@ -1,8 +1,9 @@
 //! Tunes candidates for the default rule set, validates them on held-out vehicles, and writes the chosen one.
 //!
-//! `scripts/learn-flagred DATA` creates the rows and runs it. Prints the areas of each candidate, then the figures of the chosen
-//! one with its vote of a sudden change: areas with 95 % intervals over flights, false alarms, every real vehicle, and the
-//! reliability, all by rules tuned without the vehicle. The reliability is also written into profiles.
+//! `scripts/learn-flagred DATA` creates the rows and runs this program. It prints the ROC areas of each candidate. For the
+//! chosen candidate, with the vote for sudden changes added (`with_step`), it prints areas with 95 % intervals over flights,
+//! false alarms, a line for each real vehicle, and the reliability. All figures of a vehicle are computed with rules that
+//! were tuned without it. The reliability is also written into the profiles.
 
 use std::{collections::BTreeMap, error::Error, fs, io::Write, path::Path};
 
@@ -12,10 +13,11 @@ use flagred_tests::tuning::{
     read, risks_pct, shares, tune, tune_without, with_shares, with_step,
 };
 
-/// Minimum number of critical steps, and of other steps, for a separate line of a real vehicle.
+/// Minimum number of critical steps, and also of other steps, with which a real vehicle gets a line.
 const ENOUGH: usize = 20;
-/// Number of bands of risk in the printed table and in profiles.
+/// Number of bands of risk in the printed table.
 const PRINTED_BANDS: usize = 10;
+/// Number of bands of risk in profiles.
 const PROFILE_BANDS: usize = 5;
 
 type Result<T> = std::result::Result<T, Box<dyn Error + Send + Sync>>;

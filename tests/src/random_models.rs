@@ -81,7 +81,7 @@ fn shape(rng: &mut Rng, low: f64, high: f64) -> MembershipFunction {
     let inside = between(rng, low, high);
     let spread = width * between(rng, 0.02, 0.4);
     let other = width * between(rng, 0.02, 0.4);
-    // Steeper ones are flat to the last digit, and their maxima would depend on rounding.
+    // Steeper sigmoids are flat to the last digit, so their maxima would depend on rounding.
     let steep = between(rng, 4.0, 25.0) / width * if rng.bool() { 1.0 } else { -1.0 };
     match rng.u8(0..21) {
         0 => MembershipFunction::Triangle {

@@ -57,7 +57,7 @@ fn resolved(root: &Value, part: &Value) -> Value {
     }
 }
 
-/// The differences between a value and its schema, as `path: difference`.
+/// The violations of a schema by a value, as `path: violation`.
 pub fn errors(schema: &Value, value: &Value) -> Vec<String> {
     let mut found = Vec::new();
     check(schema, value, "$", &mut found);

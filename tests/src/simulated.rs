@@ -19,8 +19,9 @@ use flagred::{
 use flagred_evaluation::{ErrorRecord, Span};
 use flagred_flightlog::{ATTITUDE, Flight};
 
-/// The interval of steps, and their horizon, in seconds.
+/// The interval between steps, in seconds.
 const STEP_S: f64 = 0.5;
+/// The prediction horizon of a step, in seconds.
 const HORIZON_S: f64 = 5.0;
 
 /// A flight in changing conditions, with its outcome.

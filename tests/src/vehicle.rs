@@ -45,7 +45,7 @@ pub struct StandIn {
     pub heard: Inbox,
     /// Messages received on the second link.
     pub heard_elsewhere: Inbox,
-    /// The times in ms of the vehicle's clock of the motor commands, and when they were sent.
+    /// For each motor command, its time on the vehicle's clock in ms, and the moment at which it was sent.
     pub sent: Vec<(u32, Instant)>,
     /// The progress of the other side. A flight at full speed waits for it, because the buffers of the machine would lose
     /// packets.
@@ -112,8 +112,8 @@ impl StandIn {
         }
     }
 
-    /// Sends heartbeats until the other side knows the motors. If nothing reads the other side's output, sends them
-    /// until it has sent a request.
+    /// Sends heartbeats until the other side reports that it knows the motors. If its output is not read, sends them until
+    /// the other side has sent a request.
     pub fn meet(&mut self) {
         let start = Instant::now();
         let is_met = |vehicle: &StandIn| match &vehicle.progress {
@@ -252,7 +252,7 @@ impl StandIn {
         self.say(&beat);
     }
 
-    /// Signs its packets, and accepts only signed ones.
+    /// From now on, signs the packets of the vehicle and accepts only signed packets.
     pub fn sign(&mut self, key: &Key) {
         self.sender = Sender::new(1).signed(key.clone());
         self.stream = Stream::with_key(key.clone());

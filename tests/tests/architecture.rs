@@ -177,7 +177,8 @@ fn the_engine_does_no_io_and_contains_nothing_about_drones() {
     const SUBJECTS: [&str; 7] = [
         "drone", "copter", "motor", "pwm", "mavlink", "flight", "flagred",
     ];
-    // Includes comments and examples, except the names of packages; some examples still use the rules of the paper.
+    // Comments and examples are searched too, except for the names of packages, and except for the comments of these files,
+    // whose examples still use the rules of the paper.
     let paper = ["map/", "learn/", "table/", "table.rs", "engine/batch.rs"];
     for (name, text) in sources("fuzzy/src") {
         let is_test = name.ends_with("tests.rs");

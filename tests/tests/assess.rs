@@ -286,7 +286,7 @@ fn a_missing_signal_that_the_profile_needs_gives_no_verdict() {
     assert!(text.contains("`anemometer_m_s`"), "{text}");
 }
 
-/// Every flight with a record of its events.
+/// Covers every simulated flight that comes with a record of its events.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
 fn the_simulated_flights_are_all_assessed() {
@@ -311,7 +311,7 @@ fn the_simulated_flights_are_all_assessed() {
     }
 }
 
-/// 20 s of a hovering quadrotor without any parameter, with pulses from 1490 to `to_us`.
+/// A tlog of a quadrotor that hovers for 20 s, without parameters; the pulses vary from 1490 us to `to_us`.
 fn tlog_without_parameters(to_us: u16) -> Vec<u8> {
     let mut log = Tlog::default();
     for row in 0..500_u32 {

@@ -14,7 +14,7 @@ use flagred_tests::{
 };
 use serde_json::Value as Json;
 
-/// Virtual memory of a call, in kB; most of it is address space of threads and libraries that is never used.
+/// The maximum virtual memory of a call, in kB; threads and libraries reserve most of it, but never use it.
 #[cfg(unix)]
 const MEMORY_KB: u64 = 1_200_000;
 
@@ -220,7 +220,7 @@ fn texts_and_definitions_of_a_ulog_are_bounded() {
         log["read"]["reason"],
         "definitions of more than 1 MB in all"
     );
-    // Messages of 8 definitions, and of all announcements but the first 4096.
+    // The rejected messages are 8 definitions and all announcements after the first 4096.
     assert_eq!(log["read"]["bad_messages"], 8 + 904);
 }
 
@@ -309,7 +309,7 @@ fn invalid_limits_are_reported() {
     }
 }
 
-/// A rule set with these numbers of inputs, terms of each and rules, each rule about two inputs.
+/// A rule set with the given numbers of inputs, of terms per input and of rules. Each rule is about two inputs.
 fn rule_set(
     inputs: usize,
     terms: usize,
@@ -679,7 +679,7 @@ fn large_rule_sets_are_checked_in_time() {
         let path = folder.file("large.yaml", text);
         let started = Instant::now();
         let output = flagred().args(["check", &path]).output().unwrap();
-        // A debug build on a busy machine; with quadratic time these would take minutes to hours.
+        // The limit allows for a debug build on a busy machine; with quadratic time, these would take minutes to hours.
         assert!(
             started.elapsed() < Duration::from_secs(30),
             "{name}: {:?}",
@@ -721,7 +721,7 @@ fn large_rule_sets_are_used_in_time() {
     }
 }
 
-/// Many coefficients for the same input, and a topic with equal names.
+/// A term with many coefficients for the same input is reported in time.
 #[test]
 fn names_that_repeat_are_found_in_time() {
     let folder = Folder::new();
@@ -743,7 +743,7 @@ fn names_that_repeat_are_found_in_time() {
     );
 }
 
-/// Every reader of tables: one cell without end, and a header with many columns.
+/// Passes one cell without end, and a header with many columns, to every reader of tables.
 #[cfg(unix)]
 #[test]
 fn tables_are_bounded() {

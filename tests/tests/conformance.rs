@@ -13,13 +13,17 @@ use fuzzy::engine::Outcome;
 use fuzzy::map::{DecisionMap, Grid};
 use fuzzy::model::{Aggregation, Conjunction, Defuzzifier, Disjunction, Model};
 
-/// Tolerances of the engine, and of the plain integration with few samples, relative to the range of the
-/// output. The precision of maxima is the distance of the samples of the integration.
+/// Tolerance of the engine, relative to the range of the output.
 const ENGINE: f64 = 1e-9;
+/// Tolerance of the engine for maxima: the expected values are only as precise as the distance of [`MANY`] samples.
 const ENGINE_MAXIMA: f64 = 1e-5;
+/// Number of samples of the plain integration in tests.
 const FEW: usize = 4_000;
+/// Tolerance of the plain integration in tests, relative to the range of the output.
 const FEW_TOLERANCE: f64 = 1e-6;
+/// Tolerance of the plain integration in tests for maxima.
 const FEW_MAXIMA: f64 = 1e-3;
+/// Number of samples of the plain integration that computes the expected values.
 const MANY: usize = 200_000;
 
 struct Case {
@@ -232,7 +236,7 @@ fn the_values_of_the_corpus_are_those_of_a_plain_integration() {
     }
 }
 
-/// Writes the values of all cases from the plain integration with very many samples.
+/// Writes the expected values of all cases, computed by plain integration with very many samples.
 fn bless() {
     for file in files() {
         let (model, lines) = parts(&file);
@@ -320,7 +324,7 @@ fn batches_on_one_and_many_threads_have_the_bits_of_single_calls() {
     }
 }
 
-/// A map with one fixed point and one axis that begins at the point.
+/// Evaluates each case as a map over the first input, with the other inputs fixed at the point of the case.
 #[test]
 fn decision_maps_have_the_bits_of_single_calls() {
     for case in corpus() {

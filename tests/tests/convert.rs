@@ -1,4 +1,4 @@
-//! `flagred convert`: written flights are read back the same.
+//! `flagred convert`: written flights are read back unchanged.
 
 use std::path::Path;
 
@@ -79,11 +79,11 @@ fn compare_assessments(log: &Path) {
     for estimator in [shipped::flagred(), shipped::flagred_paper()] {
         let [of_log, of_csv] = [&flight, &again].map(|flight| assess(flight, &estimator, None));
         let reason = |verdict: &Verdict| match verdict {
-            // The source of the vehicle's kind has other words.
+            // The CSV names another source of the vehicle's kind, so only the kind is compared.
             Verdict::NotAvailable(Reason::Log(Gap::NotAMultirotor { kind, .. })) => {
                 kind.to_string()
             }
-            // A CSV has no parameters, and therefore not the one that may be the cause.
+            // A CSV has no parameters, so its reason cannot name the parameter that may be the cause.
             Verdict::NotAvailable(Reason::Log(Gap::NoCommands { .. })) => "no commands".into(),
             Verdict::NotAvailable(reason) => reason.to_string(),
             Verdict::Known(level) => level.to_string(),

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use flagred_tests::{flagred, reference_data, simulated::on_all_cores};
 use serde_json::Value;
 
-/// One flight: its fault, its time, and when its error first exceeded 5 degrees after that.
+/// A flight, its fault, and the time at which its error first exceeded 5 degrees after the fault.
 struct Flight {
     id: String,
     what: String,

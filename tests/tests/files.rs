@@ -182,7 +182,7 @@ fn a_replaced_file_keeps_its_mode_and_links_keep_leading_to_it() {
             assert!(real.len() > 3, "{file}");
         }
     }
-    // A new file has the mode of any new file, also through a link.
+    // A new file has the default mode of new files, even if it is created through a link.
     symlink("target.csv", folder.at("dangling.csv")).unwrap();
     let (code, told) = run(&["convert", &log, "-o", &folder.at("dangling.csv")]);
     assert_eq!(code, Some(0), "{told}");

@@ -1,4 +1,4 @@
-//! Impossible contents of a flight CSV: refused at their position, never a shorter or another flight.
+//! Impossible contents of a flight CSV are refused with their position, and never read as a shorter or a different flight.
 
 use std::fmt::Write as _;
 
@@ -131,7 +131,8 @@ fn a_row_with_too_few_cells_is_refused() {
     assert_eq!(flight.report.bad_messages, 1);
 }
 
-/// Without the column, idle motors end a flight; with it, they are a fall. A written flight keeps this.
+/// Without the column `in_air`, idle motors end a flight; with it, they are a fall. A flight that is written and read back has
+/// the same verdict.
 #[test]
 fn idle_motors_override_an_assumed_time_in_the_air() {
     let idle = |i: usize, t_s: f64, air: &str| {
@@ -186,7 +187,7 @@ fn pulse_widths_in_another_unit_are_refused() {
         // Without limits there is no verdict anyway; `convert` writes such commands.
         assert!(read(csv.strip_prefix(HEAD).unwrap()).is_ok());
     }
-    // Outputs that are off, and a damaged cell.
+    // Pulses of 0 from outputs that are off and a single damaged cell are not refused.
     let csv = flight("", |i, t_s| match i {
         0..800 => Some(format!("{t_s},0,0,0,0,0")),
         900 => Some(format!("{t_s},15,1500,1500,1500,1")),
@@ -217,7 +218,7 @@ fn a_clock_of_whole_numbers_is_named() {
             Some(format!("{},1500,1500,1500,1500,1", time(i)))
         })
     };
-    // 1 kHz in milliseconds, with jitter of the clock, and a clock of seconds.
+    // A clock of about 1 kHz in whole milliseconds, which repeats some values, and a clock of whole seconds.
     for csv in [
         at(&|i| format!("{}", i * 10 / 11)),
         at(&|i| format!("{}", i / 25)),

@@ -350,7 +350,7 @@ fn a_flight_becomes_rows() {
     for row in &ahead {
         let [air_s, t_s, last_5, last_10] = [3, 4, 7, 8].map(|column| number(&row[column]));
         assert!(t_s >= air_s + 2.0 && last_5 <= last_10, "{row:?}");
-        // The next 5 s are the last 5 s, 5 s later.
+        // Five seconds later, the next 5 s of this row are the last 5 s.
         let later = ahead
             .iter()
             .find(|later| (number(&later[4]) - t_s - 5.0).abs() < 1e-6);
@@ -579,7 +579,7 @@ fn rules_are_learned_for_the_constants_of_the_template() {
                 ("temperature IS mild AND humidity IS damp", "medium"),
                 (
                     "temperature IS hot AND humidity IS damp",
-                    // The largest value decides, or the mean of 70.
+                    // Of the two rows with the highest degree, `strongest` uses the one with the larger value. The mean is 70.
                     if resolve == "strongest" {
                         "fast"
                     } else {

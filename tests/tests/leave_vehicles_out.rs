@@ -20,7 +20,7 @@ use flagred_tests::{
     },
 };
 
-/// The minimum of each of [`AREAS`].
+/// The required minimum of each of [`AREAS`].
 const LEAST: [f64; 8] = [0.86, 0.70, 0.87, 0.73, 0.83, 0.69, 0.85, 0.84];
 
 #[test]
@@ -53,7 +53,7 @@ fn rules_hold_on_vehicles_they_were_not_tuned_on() {
     let rows = tuning::read(&tables, &template.names()).unwrap();
     let folds = tuning::folds(&rows);
     let (_, tuned) = tuning::tune_without(&template, &rows, &folds);
-    // With the vote of a sudden change, as `scripts/learn-flagred` adds it.
+    // Adds the vote for sudden changes, as `scripts/learn-flagred` does.
     let complete = |votes: &Votes| with_step(votes.rule_set(&rows), &whole).unwrap();
     let tuned: Vec<fuzzy::Model> = tuned.iter().map(complete).collect();
     let names: Vec<&str> = tuned[0].inputs.iter().map(|i| i.name.as_str()).collect();

@@ -1,4 +1,4 @@
-//! Every limit of docs/limits.md, on the command line: larger inputs are rejected soon, with a message.
+//! Every limit of docs/limits.md, on the command line: larger inputs are rejected quickly, with a message.
 
 use std::{
     fs,
@@ -23,7 +23,7 @@ fn run(arguments: &[&str]) -> Output {
     let mut command = flagred();
     let started = Instant::now();
     let output = command.args(arguments).output().unwrap();
-    // A debug build on a busy machine; without limits these would take minutes or all memory.
+    // The limit allows for a debug build on a busy machine; without limits, these would take minutes or all memory.
     assert!(
         started.elapsed() < Duration::from_secs(20),
         "{arguments:?} took {:?}",
@@ -32,7 +32,7 @@ fn run(arguments: &[&str]) -> Output {
     output
 }
 
-/// Asserts that a call ends with 3 and prints this on standard error.
+/// Asserts that a call ends with exit code 3 and prints this on standard error.
 fn refused(arguments: &[&str], said: &str) {
     let output = run(arguments);
     let told = String::from_utf8(output.stderr).unwrap();

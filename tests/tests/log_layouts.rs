@@ -273,8 +273,8 @@ fn parameter(name: &str, value: f32) -> Vec<u8> {
     payload
 }
 
-/// Versions 1 and 2 mixed, parameters stored under component 190, a ground station whose
-/// heartbeat has the armed bit, and a gimbal on the vehicle's system.
+/// The log mixes MAVLink 1 and 2. It contains parameters stored under component 190, a ground station whose heartbeat has
+/// the armed bit, and a gimbal on the vehicle's system.
 #[test]
 fn telemetry_of_other_vehicles_is_ignored() {
     const QUAD: (u8, u8) = (7, 1);

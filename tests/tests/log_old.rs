@@ -1,4 +1,4 @@
-//! Missing data in the logs of old firmware, and limits that only it has.
+//! Logs of old firmware: data that they lack, and limits that only old firmware has.
 
 use flagred_flightlog::{Basis, Flight, Options, ReadError};
 use flagred_tests::log_writer::{DataFlash, ULog, Value};

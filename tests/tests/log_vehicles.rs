@@ -107,7 +107,7 @@ fn compare(vehicle: &Vehicle) -> Flight {
     assert_eq!(setup.geometry, flight.geometry);
     assert_eq!(telemetry.vehicle().kind, flight.vehicle.kind);
     assert_eq!(telemetry.vehicle().motors, flight.vehicle.motors);
-    // The clock of a link accepts the first timestamp together with the second.
+    // A live link accepts the first timestamp only once the second confirms it, so it reports no row for the first.
     let recorded: Vec<_> = flight.commands.rows().skip(1).collect();
     assert_eq!(live.len(), recorded.len());
     for (live, (row_s, row)) in live.into_iter().zip(recorded) {
@@ -191,7 +191,7 @@ fn an_ardupilot_vehicle_is_found_by_its_heartbeats() {
         (0.125, 0.875)
     );
     assert_eq!(spans(&flight), [(2.0, 6.0)]);
-    // From the first row of commands.
+    // The vehicle counts as armed from the first row of commands on.
     assert!((flight.armed.unwrap().duration_s() - 5.95).abs() < 1e-6);
     // In a recording, the first value applies; on a link, the latest one.
     vehicle.parameter("MOT_SPIN_MAX", 0.5_f32.to_le_bytes(), 2);

@@ -86,8 +86,7 @@ fn has_times(log: &str) -> bool {
     log != "aptxt_mechanical_fail.log"
 }
 
-/// Removes the single row from the time in the air that is on the ground in the reference, which
-/// has no minimum duration of landings.
+/// Removes the single row in the air that is on the ground in the reference, which has no minimum duration of landings.
 fn leave_chatter_out(flight: &mut Flight, truth: &HashMap<String, Vec<Option<f64>>>) {
     let t_s = flight.commands.t_s().to_vec();
     let is_other = |row: &usize| {
@@ -205,7 +204,7 @@ fn compare(folder: &Path, log: &str) {
         None => compare_range(log, range, &summary["out_min"], &summary["out_max"]),
     }
     if log == "aptxt_mechanical_fail.log" {
-        // The reference has no upper limit before 3.4; its margins on the full range end at 0.07.
+        // The reference has no upper limit before 3.4; its smallest margin on the full range is 0.07.
         assert_eq!(flight.effective_range.high, 0.93);
         assert!((flight.full_range_statistics().unwrap().margin_min - 0.07).abs() < 1e-3);
         flight.effective_range.high = 1.0;
@@ -314,7 +313,7 @@ fn a_damaged_log_gives_at_least_as_much_as_its_reference() {
     assert!(flight.report.skipped_bytes > 0 && flight.report.reason.is_some());
 }
 
-/// Each log that cannot be assessed has a reason, and none has a number.
+/// For each log that cannot be assessed, the statistics are an error with the reason.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
 fn logs_without_a_verdict_report_the_reason() {

@@ -355,7 +355,7 @@ fn the_server_ends_when_the_editor_disconnects() {
     server.wait().unwrap();
 }
 
-/// Only findings: nothing changes the text of another program.
+/// The server reports findings about the text of another program, but does not change it.
 #[test]
 fn a_rule_set_of_another_program_has_findings_and_is_not_formatted() {
     let text = "FUNCTION_BLOCK fan\nVAR_INPUT\n  heat : REAL;\nEND_VAR\nVAR_OUTPUT\n  speed : REAL;\nEND_VAR\n\

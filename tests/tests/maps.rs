@@ -73,7 +73,8 @@ fn a_map_in_the_terminal_marks_filled_cells() {
     assert_eq!(same, text);
 }
 
-/// In the middles of all ranges, every motor is at a limit: the picture would be all danger.
+/// If the other inputs were fixed in the middle of their ranges, every motor would be at a limit, and the picture would show
+/// only danger.
 #[test]
 fn the_default_picture_is_that_of_the_default_rule_set() {
     let (code, text, notes) = map(&[FLAGRED, "--points", "26"]);

@@ -212,7 +212,8 @@ const OCTAQUAD: [Factors; 8] = [
 /// A start time in seconds, and from then on the commands relative to 0.55.
 type Phase<'a> = (f64, &'a [f64]);
 
-/// Flies phases at 50 Hz until a time, with a little noise, and lands; samples in `gap` are omitted. Also on board.
+/// Flies phases at 50 Hz until a time, with a little noise, and lands; samples in `gap` are omitted. The same flight runs on
+/// board.
 fn fly(
     factors: &[Factors],
     phases: &[Phase<'_>],
@@ -259,17 +260,17 @@ fn levels(updates: &[Update], span_s: core::ops::Range<f64>) -> Vec<Option<Level
 #[test]
 fn a_weak_motor_is_the_one_above_its_trim_and_remains_reported() {
     let faults: [(&[Factors], &[f64], usize); 4] = [
-        // 75 % of the thrust.
+        // A motor with 75 % of its thrust.
         (&QUAD, &[0.24, 0.0, 0.0, 0.0], 0),
-        // 60 %; the healthy one opposite is as far below.
+        // A motor with 60 % of its thrust; the healthy motor opposite is lowered.
         (&HEXA, &[0.07, 0.07, 0.24, -0.15, 0.07, 0.07], 2),
-        // Stopped: the other one of the arm is motor 8, the opposite one is motor 6.
+        // A motor that has stopped; the other motor of its arm is motor 8, the opposite motor is motor 6.
         (
             &OCTAQUAD,
             &[-0.02, 0.01, 0.32, 0.01, 0.15, -0.16, 0.15, 0.18],
             2,
         ),
-        // 50 %: the other one of the arm is motor 1.
+        // A motor with 50 % of its thrust; the other motor of its arm is motor 1.
         (
             &OCTAQUAD,
             &[0.11, 0.1, -0.11, 0.1, 0.0, 0.21, 0.0, -0.01],
@@ -301,15 +302,15 @@ fn a_weak_motor_is_the_one_above_its_trim_and_remains_reported() {
 #[test]
 fn a_turn_and_a_lean_are_not_reported_as_a_weak_motor() {
     let others: [(&[Factors], &[f64]); 4] = [
-        // Turning.
+        // The vehicle turns.
         (&QUAD, &[0.2, 0.2, -0.2, -0.2]),
-        // Leaning towards a motor, and between two.
+        // The vehicle leans towards a motor, and between two motors.
         (&QUAD, &[0.14, -0.14, 0.0, 0.0]),
         (&QUAD, &[0.13, -0.13, 0.13, -0.13]),
         (&HEXA, &[-0.07, 0.07, 0.14, -0.14, 0.07, -0.07]),
     ];
     for (factors, shifts) in others {
-        // Slowly, because a step is unsteady.
+        // The commands change slowly, because a sudden change would be unsteady.
         let mut phases: Vec<(f64, Vec<f64>)> = vec![];
         for step in 1..=100 {
             let share = f64::from(step) / 100.0;

@@ -13,7 +13,7 @@ use flagred_tests::fuzzing::{TARGETS, Target, mutation::damaged};
 use flate2::{Compression, write::GzEncoder};
 use rayon::prelude::*;
 
-/// The maximum memory of an input, and of the whole process.
+/// The maximum memory in bytes for a single input, and also for the whole process.
 const MEMORY: u64 = 256 << 20;
 
 /// Prints the seed of the input if it panics.
@@ -66,7 +66,7 @@ fn survive(count: u64, longest: Duration) {
         assert!(slowest < longest, "{}: {slowest:?}", target.name);
         assert!(largest < MEMORY, "{}: {largest} bytes", target.name);
     }
-    // Including the memory of other threads and of libraries.
+    // This includes the memory of other threads and of libraries.
     if let Ok(status) = std::fs::read_to_string("/proc/self/status") {
         let line = status.lines().find(|line| line.starts_with("VmHWM:"));
         let kb: u64 = line

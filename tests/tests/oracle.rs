@@ -104,8 +104,8 @@ fn by_table(engine: &Engine, point: &[f64]) -> Option<Outcome> {
     Some(outcomes[0])
 }
 
-/// Asserts that batches, explanations, exported arrays and maps have the bits of single calls. Returns whether arrays are
-/// exported.
+/// Asserts that batches, explanations, exported arrays and maps give bit for bit the values of single calls. Returns whether
+/// arrays are exported.
 fn same_bits(model: &Model, engine: &Engine, points: &[Vec<f64>]) -> bool {
     let bits = |value: Option<f64>| value.map(f64::to_bits);
     let columns: Vec<Vec<f64>> = (0..model.inputs.len())
@@ -157,7 +157,7 @@ fn two_thousand_models_agree_with_the_reference() {
     assert_right(&compare(1_000_000, 2000));
 }
 
-/// Fails at present: in 55 of 59,945 values, one of the two is wrong (docs/validation.md, The engine).
+/// Fails at present: in 55 of 59,945 values, the engine or the reference is wrong (docs/validation.md, The engine).
 #[test]
 #[ignore = "minutes, and some values differ"]
 fn twenty_thousand_models_agree_with_the_reference() {

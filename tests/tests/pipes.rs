@@ -190,7 +190,7 @@ fn an_endless_evaluation_ends_when_its_reader_closes() {
     assert_eq!(child.wait().unwrap().code(), Some(0));
 }
 
-/// Receivers of warnings and readers of the recording still need it.
+/// Receivers of warnings and readers of the recording still need the watch.
 #[test]
 fn a_watch_without_a_reader_continues_recording() {
     let folder = Folder::new();

@@ -221,7 +221,7 @@ fn flight(
     rows
 }
 
-/// The motors of a calm hover.
+/// The motor commands of a calm hover.
 fn calm(t_s: f64) -> [Option<f64>; 4] {
     let swing = 0.001 * (7.0 * t_s).sin();
     let [a, b] = [0.5 + swing, 0.5 - swing];
@@ -498,7 +498,7 @@ fn a_profile_that_reads_no_motor_does_not_mention_rotors() {
         code == Some(3) && text.contains("not a multirotor"),
         "{text}"
     );
-    // Each sample would be a separate flight, for example with times in milliseconds.
+    // If samples are too far apart, for example because times are in milliseconds, each would be a separate flight.
     let [_, table] = forklift(&folder, 1500.0, 100.0);
     let (code, text, _) = run(&["assess", "--profile", &profile, &table]);
     assert_eq!(code, Some(3), "{text}");

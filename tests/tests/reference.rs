@@ -54,7 +54,7 @@ fn eventful(rate_hz: f64, length_s: f64, late_s: f64) -> Vec<Sample> {
         if during(40.0, 41.0) || during(75.0, 78.0) {
             continue;
         }
-        // For some time, just before a landing, and just after a take-off.
+        // The vehicle is shaken for some time in flight, just before a landing, and just after a take-off.
         let is_shaken = during(12.0, 18.0) || during(85.0 - late_s, 85.0) || during(89.0, 92.0);
         let shaken = if is_shaken { 0.32 } else { 0.004 };
         let mut commands = Vec::new();

@@ -207,7 +207,8 @@ fn nothing_in_a_log_is_markup() {
     );
 }
 
-/// Calm, then two motors for 4 s near a limit and, 20 s later, at it, in turns: WARN and FAIL with the paper's rules.
+/// Calm for 40 s. Then pairs of motors alternate between near the lower and near the upper limit for 4 s (WARN with the paper's
+/// rules) and, after 20 s of calm, between the limits themselves (FAIL).
 fn saturating_log() -> String {
     let mut log =
         String::from("## pwm_low_us: 1000\n## pwm_high_us: 2000\nt_s,pwm1,pwm2,pwm3,pwm4,in_air\n");

@@ -37,7 +37,7 @@ fn compare(kind: OutputTermKind, count: usize, samples: usize, tolerance: f64) -
             };
             let mut worst_here = error(expected);
             if worst_here > tolerance {
-                // An error of the samples is a hundredth with ten times as many.
+                // With ten times as many samples, the error of the sums is a hundredth.
                 let finer = type2::interval(&model, output, point, 10 * samples);
                 worst_here = error(finer.unwrap());
             }
@@ -202,7 +202,7 @@ rules: [IF x IS any THEN word IS it]
         wu_mendel.high().unwrap(),
         y_lower.max(y_upper) + 0.5 * right,
     );
-    // The exact ends lie between the bounds whose middles these are.
+    // Each end of `wu_mendel` is the middle between an inner and an outer bound; the exact end lies between these bounds.
     let exact = outcome("exact");
     let inner = (y_lower.min(y_upper), y_lower.max(y_upper));
     assert!((inner.0 - left..=inner.0).contains(&exact.low().unwrap()));

@@ -96,14 +96,14 @@ fn a_motor_without_commands_for_a_while_prevents_a_verdict_unless_the_flight_fai
         });
         rows.collect()
     };
-    // The whole episode without one motor.
+    // One motor is unknown for as long as the motors oscillate.
     let (code, text) = assess_csv(&without(20.0, 60.0), &[]);
     assert_eq!(code, Some(3), "{text}");
     assert!(
         text.contains("motor 3 is unknown in the air from 20.0 to 60.0 s"),
         "{text}"
     );
-    // An episode seen without the motor is still FAIL, and a moment without it changes nothing.
+    // If the motor is known during a part of the oscillation, the flight fails; a moment without the motor changes nothing.
     for (from_s, to_s) in [(50.0, 60.0), (22.0, 22.5), (10.0, 10.5)] {
         let (code, text) = assess_csv(&without(from_s, to_s), &[]);
         assert_eq!((code, text.starts_with("FAIL")), (Some(1), true), "{text}");
@@ -193,11 +193,11 @@ fn a_clock_that_goes_back_in_the_air_prevents_a_verdict() {
             "the clock goes back in the air at 61.0 s"
         );
     }
-    // By one second: the rows of that second are dropped.
+    // If the clock goes back by one second only, the rows of that second are dropped.
     let short = read(&dataflash(calm, Some((61.0, 1.0))));
     assert_eq!(short.rebooted_in_air_s, [61.0]);
     assert_eq!(assess(&short, &estimator, None).verdict.to_string(), "NA");
-    // A motor that is unknown around the reboot is unknown because of the reboot, not by itself.
+    // If a motor is unknown around a reboot, the reason is the reboot.
     let mut csv = String::from("t_s,motor1,motor2,motor3,motor4,in_air\n");
     for i in 0..1500 {
         let first = if (1000..1200).contains(&i) { "" } else { "0.5" };
@@ -264,7 +264,7 @@ fn a_flight_csv_whose_clock_starts_again_in_the_air_has_no_verdict() {
         text.contains("the clock goes back in the air at 40.0 s"),
         "{text}"
     );
-    // Also by one second: the rows of that second are assessed.
+    // The same if the clock goes back by one second only; here the rows of that second are assessed.
     let second: String = rows(1).lines().fold(String::new(), |mut text, row| {
         let (t_s, rest) = row.split_once(',').unwrap();
         let t_s: f64 = t_s.parse().unwrap();

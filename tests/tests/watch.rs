@@ -132,7 +132,7 @@ fn reference_flights_get_the_verdict_of_assess_in_real_time() {
     logs.sort();
     assert_eq!(logs.len(), 6);
     std::thread::scope(|scope| {
-        // `None` is over TCP.
+        // `None` stands for TCP.
         let wires = links().map(Some).into_iter().chain([None]);
         for (log, link) in logs
             .iter()

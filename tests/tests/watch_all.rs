@@ -20,18 +20,21 @@ use flagred_tests::{
 };
 use serde_json::Value;
 
-/// Sockets, and vehicles per socket: the system numbers are the same on all sockets.
+/// The number of sockets that vehicles send from.
 const SOCKETS: usize = 10;
+/// The number of vehicles per socket. The system numbers are the same on all sockets.
 const SYSTEMS: usize = 50;
 const VEHICLES: usize = SOCKETS * SYSTEMS;
-/// Motor commands per second of each vehicle, sent in this many parts of the second.
+/// Motor commands per second of each vehicle.
 const RATE_HZ: u32 = 10;
+/// The number of groups of vehicles; the groups send one after the other within the interval of the commands.
 const PARTS: usize = 10;
-/// The vehicle whose motors are at their limits in the second half, and the vehicle that is silent in the second half.
+/// The vehicle whose motors are at their limits in the second half.
 const TROUBLED: usize = 123;
+/// The vehicle that is silent in the second half.
 const SILENT: usize = 321;
 
-/// When the commands of a vehicle at a time of its clock, in ms, were sent.
+/// The moment at which commands were sent, by the vehicle and its clock in ms.
 type SendTimes = Arc<Mutex<HashMap<(usize, u32), Instant>>>;
 
 /// All lines of the watch, the delay of each risk, and resource figures.
@@ -244,7 +247,7 @@ fn check(results: &WatchResults, seconds: u32) -> f64 {
         (&VEHICLES.into(), &0.into())
     );
     assert_eq!(results.code, Some(1));
-    // A risk line for each command after the first two seconds.
+    // A risk line for each command, except in the first five seconds: in the first two, the risk is unknown.
     let expected = (seconds - 5) as usize * RATE_HZ as usize * VEHICLES;
     assert!(
         results.late_ms.len() > expected,
@@ -277,7 +280,7 @@ fn five_hundred_vehicles_are_followed_and_the_one_in_trouble_is_listed_first() {
     assert!(results.resident_kb < 300_000, "{} kB", results.resident_kb);
 }
 
-/// On an otherwise idle machine.
+/// The limits apply to an otherwise idle machine.
 #[test]
 #[ignore = "ten minutes on a machine that does nothing else"]
 fn five_hundred_vehicles_for_ten_minutes() {

@@ -51,7 +51,7 @@ fn a_recording_gives_assess_what_watch_said(log: &Path) {
     of_log.sort();
     of_watch.sort();
     assert_eq!(of_log, of_watch, "{name}");
-    // Every risk at its time.
+    // The risks at each time agree, too.
     let (share, difference) = compare(&said, &assessed);
     assert!(
         share > 0.99 && difference < 0.1,
@@ -82,7 +82,8 @@ fn assess_of_a_recording_without_parameters_agrees_with_watch() {
     assert_eq!(ready["assumed"], assessed["vehicle"]["assumed"]);
     assert_eq!(ready["assumed"].as_array().unwrap().len(), 3, "{ready}");
     let (share, difference) = compare(&said, &assessed);
-    // At 30 times the speed, there are no lines for the second of waiting for parameters; the verdict is of the whole flight.
+    // There are no lines for the second of waiting for parameters, which is half a minute of the flight at 30 times the speed.
+    // The verdict is that of the whole flight.
     assert!(share > 0.6 && difference < 0.1, "{share}, {difference}");
 }
 

@@ -128,7 +128,7 @@ fn garbage_and_extreme_values_are_counted_and_raise_no_alarm() {
             })
             .collect();
         vehicle.raw(&garbage);
-        // Longer than any packet, and the beginning of a truncated one.
+        // Bytes that exceed any packet, and the beginning of a truncated packet.
         vehicle.raw(&[0xfd; 5000]);
         vehicle.raw(&[0xfd, 30, 0, 0, 1, 1, 1, 36, 0, 0, 9]);
         // Extreme values: invalid pulses, and impossible times.
@@ -376,7 +376,8 @@ fn an_unknown_risk_is_not_good() {
     assert_eq!(said.code, Some(3));
 }
 
-/// A link that breaks in the air is not a landing; nor is a watch that is ended there, but it has received everything.
+/// Neither a link that breaks in the air nor a watch that is ended then counts as a landing. Only the broken link prevents a
+/// verdict, because the watch that is ended has received everything until then.
 #[test]
 fn a_flight_whose_end_was_not_received_is_not_reported_as_landed() {
     let flight = flight(Path::new(STEADY));

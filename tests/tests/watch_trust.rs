@@ -116,7 +116,7 @@ fn a_vehicle_that_comes_back_from_another_address_is_followed_after_a_silence() 
 fn only_one_of_two_watches_sends() {
     let (flight, start_s) = steady();
     let first = Watch::udp(&[]);
-    // Ages that differ by more than a tenth of a second.
+    // The running times must differ by more than a tenth of a second, the unit in which the watches compare them.
     std::thread::sleep(Duration::from_millis(400));
     let second = Watch::udp(&[]);
     let mut vehicle = first.vehicle(&flight, Link::default());
@@ -159,7 +159,7 @@ fn with_a_key_only_signed_packets_are_accepted_and_sent() {
     let mut liar = watch.vehicle(&flight, Link::default());
     let mut vehicle = watch.vehicle(&flight, Link::default());
     vehicle.sign(&key);
-    // First, and with the wrong key: the vehicle is not locked out.
+    // The liar sends first, unsigned and then with the wrong key; the vehicle is accepted anyway.
     for _ in 0..5 {
         lie(&mut liar, 1.0);
     }

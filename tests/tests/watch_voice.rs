@@ -44,7 +44,7 @@ fn the_risk_is_on_the_wire_within_5_ms() {
     assert!(late_ms[late_ms.len() / 2] < 5.0, "{late_ms:?}");
 }
 
-/// On an otherwise idle machine: `scripts/measure-live`.
+/// Needs an otherwise idle machine; `scripts/measure-live` runs it.
 #[test]
 #[ignore = "for a machine that does nothing else"]
 fn all_but_one_percent_of_risks_are_on_the_wire_within_5_ms() {

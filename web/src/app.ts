@@ -26,7 +26,7 @@ export interface App {
   file: BackingFile | undefined;
 }
 
-/** An opened room. It stays open, hidden, while another room is shown. */
+/** An opened room. It stays open, but hidden, while another room is shown. */
 export interface Room {
   /** Called when the address changes, or when the room is shown again. */
   shown?(parameters: URLSearchParams): void;

@@ -7,7 +7,7 @@ import type * as data from './rules/datacalls';
 /** All functions that can be called in a worker. The first argument of each is a function that receives progress. */
 export type Calls = typeof flight & typeof rules & typeof data;
 export type Name = keyof Calls;
-/** `found` is the best result so far, if there is one. */
+/** Receives the progress; `found` is the best result so far, if there is one. */
 export type Tell = (progress: number, found?: unknown) => void;
 export type Arguments<K extends Name> = Parameters<Calls[K]> extends [Tell, ...infer A] ? A : never;
 export type Answer<K extends Name> = Awaited<ReturnType<Calls[K]>>;

@@ -4,8 +4,8 @@ export type Child = Node | string | number | null | undefined | false;
 type Value = string | number | boolean | null | undefined | ((event: never) => void);
 
 /**
- * Creates an element. A function is a listener of the event in its name (`onclick`), `true` an attribute without a
- * value.
+ * Creates an element. An attribute that is a function becomes a listener of the event in its name, such as `onclick`;
+ * `true` becomes an attribute without a value.
  */
 export function h<K extends keyof HTMLElementTagNameMap>(
   tag: K,

@@ -11,8 +11,9 @@ export async function backingFile(): Promise<BackingFile | undefined> {
   const first = await fetch(ADDRESS, { cache: 'no-store' });
   // The status is 204 if there is none.
   if (first.status !== 200) return undefined;
-  // The last known text, and the tag that the server uses for it.
+  // The last known text.
   let known = '';
+  // The tag of that text on the server.
   let tag = '';
   // The editor ends lines with \n only; the line ends of the file are preserved.
   let end = '\n';

@@ -31,7 +31,7 @@ const sizes = { phone: { width: 390, height: 844 }, desktop: { width: 1280, heig
 
 const { chromium, server } = await opened();
 
-/** The problems, one a line: which rule, where, and why. */
+/** The problems, one per line: the rule, the element and the reason. */
 async function violations(page) {
   await page.evaluate(axe);
   const { violations } = await page.evaluate(() => globalThis.axe.run(document, { resultTypes: ['violations'] }));

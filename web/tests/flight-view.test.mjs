@@ -1,4 +1,5 @@
-// What the flight room shows, and where: the verdict first, then signals and track, a table of many logs, and printing.
+// The contents of the flight room and their positions: the verdict first, then signals and track, a table of many
+// logs, and printing.
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';

@@ -166,7 +166,7 @@ test('two fingers zoom, and keys move the cursor', async () => {
   await touch('touchEnd');
   await room.settled();
   const [start, length] = await area.evaluate((element) => [element.closest('.panel').dataset.start, element.closest('.panel').dataset.length].map(Number));
-  // A tenth of the chart has become four tenths of it.
+  // The stretch is now about a quarter of the flight: what was a tenth of the chart is four tenths of it.
   assert.ok(Math.abs(length - 185.15 / 4) < 3, `${length} s`);
   assert.ok(Math.abs(start + length / 2 - (49 + 185.15 / 2)) < 3, `from ${start} s`);
   const shown = room.time;
@@ -225,7 +225,8 @@ test('a profile from a file is used; one with errors is reported and changes not
   await choose('calm.yaml', profile.replace('fail: {risk: 80', 'fail: {risk: 99'));
   await room.verdict('WARN');
   assert.ok(await page.locator('.message').isHidden());
-  // A profile whose rule set is chosen too, as the command line finds it next to the profile.
+  // The user chooses a profile together with the rule set that it names; the command line finds this file next to the
+  // profile.
   const rules = readFileSync(new URL('../../rules/flagred.yaml', import.meta.url), 'utf8').replace('unsteady_lately IS stormy AND at_limit IS none THEN risk IS very_high', 'unsteady_lately IS stormy AND at_limit IS none THEN risk IS very_low');
   const there = folder({ [basename(GUST)]: readFileSync(GUST), 'mine.yaml': profile.replace('rules: flagred ', 'rules: mild.yaml '), 'mild.yaml': rules });
   await page.getByLabel('Profile from a file').setInputFiles([`${there}/mild.yaml`, `${there}/mine.yaml`]);

@@ -34,7 +34,10 @@ test('a page that was loaded once works without a network', { timeout: 120_000 }
   assert.deepEqual(complaints, []);
 });
 
-/** Browsers keep files for as long as servers tell them to; old files must not become a part of the next build. */
+/**
+ * Browsers cache files for as long as the server allows, but files of an old build must not become a part of the next
+ * build.
+ */
 test('another build replaces the one that was loaded', { timeout: 120_000 }, async (t) => {
   const folder = await mkdtemp(join(tmpdir(), 'flagred-page-'));
   t.after(() => rm(folder, { recursive: true }));

@@ -7,7 +7,7 @@ export async function flight(page) {
   await page.locator('.fired li').first().waitFor({ state: 'attached' });
 }
 
-/** A rule set with its map, its terms and a reason. */
+/** A rule set with its map, its terms and an explanation. */
 export async function rules(page) {
   await page.locator('.shapes svg').first().waitFor({ timeout: 60_000 });
   await page.locator('.why').filter({ hasText: /\d/ }).waitFor();

@@ -56,13 +56,13 @@ test('for a dropped table the error is that of the command line', async (t) => {
   const folder = await mkdtemp(join(tmpdir(), 'flagred-rows-'));
   t.after(() => rm(folder, { recursive: true }));
   await writeFile(join(folder, 'rules.yaml'), starter);
-  // The command evaluates rows without a measured value, instead of leaving them out.
+  // Unlike the page, the command evaluates rows without a measured value, so these are removed.
   await writeFile(join(folder, 'rows.csv'), rows.split('\n').filter((line) => !line.endsWith(',')).join('\n'));
   const said = execFileSync('sh', ['-c', `'${join(repository, 'target/debug/flagred')}' eval --suffix _model rules.yaml rows.csv 2>&1 >/dev/null`], { cwd: folder, encoding: 'utf8' });
   const [, rms, mean] = /RMS error ([\d.]+), mean error (-?[\d.]+)/.exec(said);
   assert.equal(await figure(page, 'RMS error'), Number(Number(rms).toPrecision(4)), said);
   assert.ok(Math.abs((await figure(page, 'Mean error')) - Number(mean)) < 1e-3, said);
-  // A click on the worst row explains its point.
+  // After a click on the worst row, its point is explained.
   const cells = await page.locator('.data tbody tr').first().locator('td').allTextContents();
   await page.locator('.data tbody button').first().click();
   await page.waitForFunction((value) => Number(document.querySelector('[aria-label="temperature, as a number"]').value) === Number(value), cells[1]);
@@ -105,7 +105,7 @@ test('rules are learned, and a search that is stopped uses only what it found', 
   await page.getByRole('button', { name: 'Stop' }).click();
   await page.locator('.data .state', { hasText: 'Stopped; the best rule set so far is in the editor.' }).waitFor();
   await page.waitForFunction((learned) => localStorage.getItem('flagred.rules') !== learned, learned);
-  // The next search works.
+  // After a stopped search, the next one works.
   await page.getByRole('button', { name: 'Learn rules' }).click();
   await page.locator('.data .state', { hasText: 'rules learned' }).waitFor({ timeout: 60_000 });
 });

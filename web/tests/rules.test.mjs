@@ -252,7 +252,7 @@ test('a link or an example does not discard the user\'s own text', async (t) => 
   await page.waitForFunction((mine) => localStorage.getItem('flagred.rules') === mine, mine);
 });
 
-test('the rule viewer shows all rules and how far they hold, and changes with the point', async (t) => {
+test('the rule viewer shows all rules with their degrees, and changes with the point', async (t) => {
   const { page } = await room(t, '?start=tipper');
   const viewer = page.locator('.viewer');
   await viewer.locator('tbody tr').nth(2).waitFor();
@@ -299,7 +299,7 @@ test('a surface turns by drag and keys, and turns back', async (t) => {
 
 test('everything that is shown belongs to the open text', async (t) => {
   const { page } = await room(t, '?start=tipper&x=food&y=service');
-  // The line under a term is at the current point, also after Undo.
+  // The line in the picture of a term is at the current point, also after Undo.
   await page.getByRole('slider', { name: 'good: mean' }).focus();
   await page.keyboard.press('ArrowRight');
   await page.locator('.variable output', { hasText: 'good: mean 5.1' }).waitFor();
@@ -313,7 +313,8 @@ test('everything that is shown belongs to the open text', async (t) => {
   await put(page, (await read('rules/tipper.yaml')).replace('name: tipper', 'name: other'));
   await page.getByRole('heading', { name: 'other' }).waitFor();
   assert.equal(await page.getByLabel('Input across').inputValue(), 'service');
-  // A value outside the shown part is not shown at the end of its slider.
+  // A value outside the shown part switches the slider to the whole range, instead of being shown at the end of the
+  // part.
   const { page: flight } = await room(t, '?start=flagred-paper&at=0.25,0.25');
   const slider = flight.getByRole('slider', { name: 'spread' });
   await flight.waitForFunction(() => document.querySelector('[aria-label="spread, as a number"]').value === '0.25');

@@ -23,7 +23,7 @@
 extern "C" {
 #endif
 
-/* The format of the data that `flagred export --c` writes. */
+/* The version of the format of the data that `flagred export --c` writes. */
 #define FLAGRED_FORMAT 10
 
 /* ---- Assessing a flight ------------------------------------------------------------------------------------------- */
@@ -80,7 +80,8 @@ typedef struct flagred_limits {
     double high;
 } flagred_limits;
 
-/* The factors of a motor in the mixer. The largest of each axis is 1; they are 0 for an axis that no motor acts on. */
+/* The factors of a motor in the mixer, scaled so that the largest factor of each axis is 1. On an axis that no motor
+ * acts on, all factors are 0. */
 typedef struct flagred_factors {
     double roll;                /* positive if more thrust rolls the vehicle to the right: a motor on the left */
     double pitch;               /* positive if it raises the nose: a motor in front */
@@ -91,8 +92,8 @@ typedef struct flagred_factors {
 typedef struct flagred_sample {
     double t_s;                 /* seconds; must increase */
     const double *commands;     /* the command of each motor, in the unit of its limits; NAN if unknown */
-    size_t motors;              /* the number of commands; missing ones, and the risk, are then unknown; more than
-                                   the monitor has motors are FLAGRED_WRONG_COUNT */
+    size_t motors;              /* the number of commands; if some are missing, they and the risk are unknown; more commands
+                                   than motors of the monitor are refused with FLAGRED_WRONG_COUNT */
     const double *signals;      /* the signals of the profile, in its order; NAN if unknown; may be NULL */
     size_t signal_count;
     int32_t in_air;             /* the report of the land detector: 0 on the ground, 1 in the air; -1 unknown: motors that
@@ -124,9 +125,9 @@ typedef struct flagred_finding {
     int32_t cause_input;        /* the index of the input of the profile; -1 */
 } flagred_finding;
 
-/* The words of a finding for the pilot, in an exported profile. Placeholders in braces are to be replaced: {value}
-   by cause_value, {percent} by 100 times that, {peak} by peak_pct, {threshold} by threshold_pct, {motor} by "motor
-   3" (motor + 1), {side} by "below" or "above" (at_high_limit). */
+/* The texts of a finding for the pilot, in an exported profile. The program must replace the placeholders in braces:
+ * {value} by cause_value, {percent} by 100 times cause_value, {peak} by peak_pct, {threshold} by threshold_pct,
+ * {motor} by "motor 3" (motor + 1), {side} by "below" or "above" (at_high_limit). */
 typedef struct flagred_words {
     const char *code;           /* for programs: small letters, digits and _ */
     const char *brief;          /* a few words, for messages limited to 50 characters */
@@ -156,14 +157,15 @@ typedef struct flagred_rules flagred_rules;
 typedef struct flagred_plan flagred_plan;
 typedef struct flagred_monitor flagred_monitor;
 
-/* The version of this library, as "0.1.0". */
+/* The version of this library, such as "0.1.0". */
 const char *flagred_version(void);
 
 /* The text of a status. */
 const char *flagred_status_text(int32_t status);
 
 /* The size of a monitor's memory in bytes; 0 for an invalid plan. FLAGRED_MEMORY of an exported profile is at least
- * as large on every processor. A program with several profiles uses FLAGRED_PLAN_NAME_MEMORY of each. */
+ * as large on every processor. A program with several profiles uses the macro FLAGRED_PLAN_NAME_MEMORY of each
+ * profile. */
 size_t flagred_memory_size(const flagred_plan *plan, size_t motors);
 
 /* Creates a monitor of a new flight in `memory`; there is nothing to free. `plan` and `memory` must outlive it.
@@ -187,8 +189,8 @@ int32_t flagred_open_finding(const flagred_monitor *monitor, flagred_finding *fi
 /* Ends the flight and writes the open findings. The next sample begins a new flight. */
 int32_t flagred_finish(flagred_monitor *monitor, flagred_finding ended[FLAGRED_ENDED]);
 
-/* Computes the risk at values of the profile's inputs, in its order, independent of the flight. Writes risk_pct,
- * coverage, filled_from, dominant_rule and clamped. */
+/* Computes the risk at given values of the profile's inputs, in the order of the profile. It does not depend on the
+ * flight. Writes risk_pct, coverage, filled_from, dominant_rule and clamped. */
 int32_t flagred_evaluate(flagred_monitor *monitor, const double *inputs, size_t count, flagred_update *update);
 
 /* ---- Evaluating a rule set ----------------------------------------------------------------------------------------
@@ -363,12 +365,13 @@ typedef struct flagred_channel {
     uint32_t observed, indices[2], motors, threshold, in_bins, exponential;
 } flagred_channel;
 
-/* The input that a proposition of a rule is about. */
+/* A proposition of a rule, and the input that it reads. */
 typedef struct flagred_proposition {
     uint32_t rule, input, literal;
 } flagred_proposition;
 
-/* Rules that are evaluated together, if outputs read other outputs, and the end of the stage in each array. */
+/* A stage: rules that are evaluated together. There are several stages if outputs read other outputs. `ends` are the
+ * ends of the stage's part of each array. */
 typedef struct flagred_stage {
     uint32_t conjunctions, actions_a_cell, first_action, sums;
     struct {

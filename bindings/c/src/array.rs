@@ -23,12 +23,13 @@ impl<T> Array<T> {
         if self.items.is_null() || !self.items.is_aligned() {
             return Err(Status::NullPointer);
         }
-        // No object can be larger, so the count is damaged.
+        // No object is larger than `isize::MAX` bytes, so a larger count is damaged.
         let bytes = self.count.checked_mul(size_of::<T>());
         if bytes.is_none_or(|bytes| bytes > isize::MAX as usize) {
             return Err(Status::DamagedPlan);
         }
-        // SAFETY: neither null nor unaligned, of a possible size, and valid by the caller's promise.
+        // SAFETY: the pointer is neither null nor unaligned, the size is possible, and the caller promises that the
+        // items are valid.
         Ok(unsafe { core::slice::from_raw_parts(self.items, self.count) })
     }
 }

@@ -29,7 +29,7 @@ impl COutcome {
             value: outcome.value().unwrap_or(f64::NAN),
             coverage: outcome.coverage,
             state: match outcome.state {
-                // Tables have no intervals.
+                // A table never computes intervals.
                 State::Defined(_) | State::Interval { .. } => 0,
                 // `Previous` occurs only in sequences of evaluations.
                 State::Default(_) | State::Previous(_) => 1,
@@ -113,11 +113,11 @@ unsafe fn start(
     block.place(CEvaluator(evaluator)).map(core::ptr::from_mut)
 }
 
-/// Evaluates one value for each input into one outcome for each output.
+/// Evaluates one value for each input, and writes one outcome for each output.
 ///
 /// # Safety
 /// `evaluator` must be null or from [`flagred_rules_start`]; `inputs` must be null or have `input_count` items;
-/// `outcomes` must be null or have room for `output_count` items.
+/// `outcomes` must be null or have space for `output_count` items.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "foreign memory")]
 pub(crate) unsafe extern "C" fn flagred_rules_evaluate(
@@ -141,7 +141,7 @@ pub(crate) unsafe extern "C" fn flagred_rules_evaluate(
         return Status::WrongCount as i32;
     };
     for (i, outcome) in evaluated.iter().enumerate() {
-        // SAFETY: the caller promises room for this number of outcomes.
+        // SAFETY: the caller promises space for this number of outcomes.
         unsafe { outcomes.add(i).write(COutcome::of(outcome)) };
     }
     Status::Ok as i32

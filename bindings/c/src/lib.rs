@@ -133,7 +133,7 @@ unsafe fn start(
     memory: *mut u8,
     size: usize,
 ) -> Result<*mut CMonitor, Status> {
-    // SAFETY: the caller's promise: it outlives the monitor.
+    // SAFETY: the caller promises that the plan is valid and outlives the monitor.
     let plan: &'static Plan = unsafe { plan.as_ref() }.ok_or(Status::NullPointer)?;
     // SAFETY: the caller's promise: nothing else uses the memory, and it outlives the monitor.
     let mut block = unsafe { Block::new(memory, size) }?;

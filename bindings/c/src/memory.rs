@@ -7,7 +7,7 @@ use crate::status::Status;
 /// The alignment of the memory.
 const ALIGNMENT: usize = 16;
 
-/// The rest of the caller's memory.
+/// The unused rest of the caller's memory.
 pub(crate) struct Block {
     next: *mut u8,
     left: usize,

@@ -116,7 +116,7 @@ impl Plan {
     pub(crate) unsafe fn bytes(&self, motors: usize) -> Result<usize, Status> {
         // SAFETY: the caller's promise.
         let plan = unsafe { self.whole(&[], &[]) }?;
-        // The channels and inputs are converted into the memory, too.
+        // The memory also stores the channels and inputs after their conversion.
         let channel = size_of::<Channel>() + size_of::<channel::ChannelState>();
         let input = size_of::<channel::Input>() + size_of::<f64>();
         let channels = self.channels.count.checked_mul(channel);

@@ -61,8 +61,8 @@ macro_rules! define {
             }
         }
     };
-    // Hedges are enumerations, whose codes are verified before they become a reference. For all other items every bit
-    // pattern is valid.
+    // The codes of hedges are verified before they are reinterpreted as `Hedge`, which is an enumeration. For all
+    // other items every bit pattern is valid.
     (@item Hedge) => { u32 };
     (@item $item:ident) => { $item };
     (@read Hedge $array:expr) => { hedges($array.read()?)? };

@@ -103,7 +103,7 @@ fn import_batch(capsules: &Bound<'_, PyAny>) -> PyResult<ForeignTable> {
     if is_taken || array.is_released() {
         return Err(taken("array"));
     }
-    // SAFETY: as above; it is not released, so its texts are valid.
+    // SAFETY: the schema lives as long as the capsule, and it is not released, so its texts are valid.
     let fields = fields(unsafe { schema.cast::<FFI_ArrowSchema>().as_ref() })?;
     let batch = batch(array, &fields).map_err(|error| data_error(error, None))?;
     Ok(ForeignTable {

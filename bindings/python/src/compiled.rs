@@ -36,7 +36,7 @@ pub(crate) struct CompiledRuleSet {
     inputs: Vec<Py<PyString>>,
 }
 
-/// The scratch memory of each thread for single evaluations, of the rule sets used last.
+/// The scratch memory of a rule set for single evaluations. Each thread keeps it for the rule sets that it used last.
 struct CachedScratch {
     id: u64,
     scratch: Scratch,
@@ -145,7 +145,7 @@ impl CompiledRuleSet {
         ))
     }
 
-    /// Evaluates one point: values, or outcomes `with_reasons`.
+    /// Evaluates one point. Returns values, or outcomes if `with_reasons`.
     pub(crate) fn point<'py>(
         &self,
         py: Python<'py>,
@@ -161,7 +161,7 @@ impl CompiledRuleSet {
         })?
     }
 
-    /// Evaluates values of which each is a number or a pair of ends.
+    /// Evaluates inputs, each of which is a number or a pair of the ends of an interval.
     pub(crate) fn intervals<'py>(
         &self,
         py: Python<'py>,
@@ -317,7 +317,7 @@ impl CompiledRuleSet {
     }
 }
 
-/// A Python number, or None, which is unknown; `None` for anything else.
+/// Converts a Python number; Python's `None` becomes NaN, which is unknown. Returns `None` for anything else.
 fn number(value: &Bound<'_, PyAny>) -> Option<f64> {
     if let Ok(float) = value.cast::<PyFloat>() {
         return Some(float.value());

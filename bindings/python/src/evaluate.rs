@@ -61,7 +61,7 @@ impl<'e> Evaluator<'e> {
         })
     }
 
-    /// The outcomes of each output; columns have equal lengths. The interpreter is released meanwhile.
+    /// Returns the outcomes of each output. All columns must have `rows` values. The interpreter is released meanwhile.
     pub(crate) fn run(
         &mut self,
         py: Python<'_>,

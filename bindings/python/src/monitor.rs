@@ -121,7 +121,7 @@ impl MonitorData {
     ) -> PyResult<Update> {
         let commands = numbers(&commands);
         let signals = numbers(&signals);
-        // Refused before the sample is processed: in another unit, all samples of the flight are wrong.
+        // A command in another unit is refused before the sample is processed, because all samples of the flight are wrong.
         if let Some(motor) = commands
             .iter()
             .position(|e| counted(*e).is_nan() && !e.is_nan())

@@ -1,4 +1,4 @@
-"""The corpus shared by all languages: every outcome bit for bit, by every path."""
+"""Every way of evaluation gives the outcomes of the corpus, which all languages share, bit for bit."""
 
 import math
 import re

@@ -22,7 +22,7 @@ HEADER = "t_s,motor1,motor2,motor3,motor4,roll_des_deg,roll_deg,pitch_des_deg,pi
 
 
 def log(vehicle: str, kind: str, upset_s: float | None) -> bytes:
-    """A minute in the air; some seconds before the upset, the motors reach their limits, then it rolls over."""
+    """A minute in the air. Some seconds before the upset, the motors reach their limits; then the vehicle rolls over."""
     lines = [f"# vehicle: {vehicle}\n# kind: {kind}\n", HEADER]
     for i in range(1600):
         t_s = i / 25

@@ -242,7 +242,7 @@ def change_some(logs: Path) -> None:
 
 
 def test_commands_that_replace_rows_can_be_interrupted(logs, tmp_path, here, monkeypatch):
-    """As above, with changed and deleted logs and compaction, killed at writes and at deletions."""
+    """A run over changed and deleted logs, or a compaction, is killed at a write or a deletion, and repaired by the next."""
     first = tmp_path / "first"
     fleet.assess([str(logs)], str(first), recursive=True)
     fleet.compact(str(first))
@@ -299,7 +299,7 @@ def test_a_worker_of_an_earlier_run_commits_nothing(logs, tmp_path):
 
 
 def test_two_rows_of_a_log_become_one(logs, tmp_path, here):
-    """As after a worker that commits while the next run begins."""
+    """A log has two rows if a worker of an earlier run commits while the next run begins."""
     out = tmp_path / "out"
     fleet.assess([str(logs)], str(out), recursive=True)
     before = content(out)
@@ -333,7 +333,7 @@ def test_a_vanished_log_has_no_row_and_a_busy_storage_is_retried(logs, tmp_path,
     rows = flights(out)
     assert len(rows) == 5 and rows["1.csv"]["status"] == "assessed"
     assert (rows["2.csv"]["status"], rows["2.csv"]["error"]) == ("unavailable", "503 slow down")
-    # The next run requests it again.
+    # The next run requests the unavailable log again.
     with Catalog(job.settings) as catalog:
         source = open_place(str(logs))
         catalog.take_in(source, source.logs(True, ["*.csv"]))
@@ -418,7 +418,7 @@ def test_a_log_that_ends_its_worker_is_found(logs, tmp_path, monkeypatch):
 
 
 def test_a_full_disk_stops_the_run_before_logs_are_read_again(logs, tmp_path, monkeypatch, capsys):
-    """The workers' disk is full for steps. Each log is read at most once."""
+    """In the workers, writing steps fails as on a full disk. Each log is read at most once."""
     plugin = tmp_path / "plugin"
     plugin.mkdir()
     (plugin / "sitecustomize.py").write_text(
@@ -566,7 +566,7 @@ def test_a_torn_file_of_the_dataset_is_named(kind, logs, tmp_path, here, capsys)
     (logs / "vehicle=v0" / "weak.csv").write_text(weak(0))
     (logs / "vehicle=v5" / "weak.csv").write_text(weak(5))
     fleet.assess([str(logs)], str(out), recursive=True)
-    # DuckDB opens the first one in any case.
+    # The last file is damaged, because DuckDB opens the first one in any case.
     torn = tear(sorted((out / kind).rglob("*.parquet"))[-1])
     assert main(["report", str(out), "-o", str(tmp_path / "fleet.html")]) == 3
     told = capsys.readouterr().err
@@ -597,7 +597,7 @@ def test_assess_reads_the_logs_of_a_torn_part_again(kind, logs, tmp_path, here, 
     assert content(out) == before
     assert main(arguments) == 0
     assert capsys.readouterr().out.startswith("0 logs read")
-    # The row of a deleted log would be lost.
+    # A damaged file is not replaced if its logs were deleted: their rows would be lost.
     torn = tear(sorted((out / kind).rglob("*.parquet"))[-1])
     shutil.rmtree(logs)
     logs.mkdir()
@@ -627,7 +627,7 @@ def test_a_part_that_is_missing_is_named_and_its_logs_are_read_again(kind, logs,
     assert main(arguments) == 0
     assert f"warning: `{lost}` is missing" in capsys.readouterr().err
     assert content(out) == before
-    # The row of a deleted log would be lost.
+    # A missing file is not replaced if its logs were deleted: their rows would be lost.
     sorted((out / kind).rglob("*.parquet"))[-1].unlink()
     shutil.rmtree(logs)
     logs.mkdir()

@@ -74,7 +74,7 @@ def test_causes_are_words_for_a_pilot(dataset):
     assert {cause["code"] for cause in causes} == {code for code, _, _ in synthetic.CAUSES}
     for cause in causes:
         text, advice = next((text, advice) for code, text, advice in synthetic.CAUSES if code == cause["code"])
-        # Without the numbers of one flight.
+        # The texts do not contain the numbers of a single flight.
         assert cause["what"] == text and cause["advice"] == advice
         assert cause["flights"] == cause["findings"] and 1 <= cause["vehicles"] <= 40
 
@@ -233,7 +233,7 @@ def test_reports_of_the_worst_flights(tmp_path, capsys):
     assert "0 of 1 vehicles have flights on at least 8 days" in page.read_text()
     assert "Whether the risk of this vehicle changes is unknown: it has flights on fewer than 8 days." in vehicle.read_text()
     assert f"href='../flights/{written.name}'" in vehicle.read_text() and "href='../../fleet.html'" in vehicle.read_text()
-    # It is not written again.
+    # An existing report is not written again, so its log may be missing.
     (logs / "a.csv").unlink()
     assert main(arguments) == 0 and f"href='fleet.files/flights/{written.name}'" in page.read_text()
     with pytest.raises(SystemExit):

@@ -194,7 +194,7 @@ def test_capsules_that_are_used_up_or_do_not_fit_are_refused(capfd):
     ]:
         with pytest.raises(flagred.DataError, match=told):
             MODEL(Capsules(kind, capsules))
-    # Without a message of a panic of the underlying library.
+    # The panics of the underlying library print nothing.
     assert capfd.readouterr().err == ""
 
 

@@ -1,4 +1,7 @@
-/** Rows of measured values: the error of a rule set on them, rules learned from them, numbers tuned to them. The page has it; the npm package does not, which would grow by a third. */
+/**
+ * Rows of measured values: the error of a rule set on them, rules learned from them, and numbers tuned to them. Only
+ * the page contains this module; with it, the npm package would be a third larger.
+ */
 
 import { beside, type Source } from './load.js';
 import { guard } from './panic.js';
@@ -6,23 +9,23 @@ import * as wasm from './wasm/data.js';
 
 const guarded = guard(wasm.panicMessage);
 
-/** Loads the module for data, from beside this file or from elsewhere. Calls after the first do nothing. */
+/** Loads the module for data, from the file next to this one or from `source`. Later calls do nothing. */
 export async function startData(source?: Source): Promise<void> {
   await wasm.default({ module_or_path: source ?? (await beside(new URL('./wasm/data_bg.wasm', import.meta.url))) });
 }
 
-/** The errors of a rule set on rows: computed less measured. */
+/** The errors of a rule set on rows: computed minus measured values. */
 export interface Errors {
   output: string;
   unit: string | null;
-  /** The rows that are used. */
+  /** The number of rows that are used. */
   rows: number;
-  /** Why rows are not used, at most 20 of them. */
+  /** The reasons why rows are not used, at most 20. */
   refused: string[];
   refusedCount: number;
-  /** Rows in which the rule set has no value. */
+  /** The number of rows in which the rule set has no value. */
   withoutValue: number;
-  /** `null` where no row has a value. */
+  /** The RMS error; `null` if no row has a value. */
   rms: number | null;
   mean: number | null;
   largest: number | null;
@@ -33,7 +36,7 @@ export interface Errors {
 /** A rule set made from rows. */
 export interface Made {
   text: string;
-  /** What was done, in a sentence. */
+  /** A sentence that describes the result. */
   words: string;
   details: string[];
 }
@@ -46,17 +49,23 @@ export class DataTable {
     this.#table = guarded(() => new wasm.DataTable(file, text));
   }
 
-  /** The errors of a rule set in YAML. */
+  /** Returns the errors of a rule set in YAML. */
   errors(rules: string): Errors {
     return JSON.parse(guarded(() => this.#table.errors(rules))) as Errors;
   }
 
-  /** The rule set with numbers that fit the rows, as `flagred tune`. `watch` hears the step, and the error and the text so far. */
+  /**
+   * Fits the numbers of a rule set to the rows, like `flagred tune`. `watch` is called with the step, the error so
+   * far and the text so far.
+   */
   tune(rules: string, watch: (step: number, error: number, text: string) => void = () => undefined): Made {
     return JSON.parse(guarded(() => this.#table.tune(rules, watch))) as Made;
   }
 
-  /** The rule set with rules from the rows, as `flagred learn`; `complete` adds rules for combinations of terms without rows. */
+  /**
+   * Replaces the rules of a rule set by rules learned from the rows, like `flagred learn`; `complete` adds rules for
+   * combinations of terms without rows.
+   */
   learn(rules: string, complete = false): Made {
     return JSON.parse(guarded(() => this.#table.learn(rules, complete))) as Made;
   }

@@ -134,7 +134,7 @@ export interface FlightDocument {
   /** The log that was read. */
   log: Log;
   vehicle: Vehicle;
-  /** The amount of data read, and damage. */
+  /** The amount of data that was read, and the damage that was found. */
   read: Report;
   profile: Profile;
   /** The level of the most severe finding; `NA` where there is no verdict. */

@@ -30,7 +30,7 @@ export async function startFlight(source?: Source): Promise<void> {
 /** Available only in workers. */
 declare const FileReaderSync: new () => { readAsArrayBuffer(blob: Blob): ArrayBuffer };
 
-/** Returns `length` bytes of a log from `offset` on; fewer near its end, none at its end. */
+/** Returns `length` bytes of a log from `offset` on: fewer near the end of the log, none at its end. */
 export type Read = (offset: number, length: number) => Uint8Array;
 
 /** Changed thresholds and times; omitted ones keep their values. */
@@ -78,7 +78,7 @@ export type Part = (typeof PARTS)[number];
 /** A signal of a log. */
 export interface SignalLabel {
   name: string;
-  /** Empty if it has none or it is unknown. */
+  /** The unit; empty if the signal has none or it is unknown. */
   unit: string;
   /** The message and field that contain it. */
   source: string;
@@ -97,7 +97,10 @@ export class Profile {
     return guarded(() => wasm.Profile.shipped());
   }
 
-  /** Creates a shipped profile by its name. The text of a rule set replaces the one that it names. */
+  /**
+   * Creates a shipped profile by its name. If the text `rules` is given, it replaces the rule set that the profile
+   * names.
+   */
   static named(name = 'flagred', rules?: string): Profile {
     return new Profile(guarded(() => new wasm.Profile(name, undefined, rules)));
   }
@@ -115,14 +118,14 @@ export class Profile {
     return guarded(() => this.inner.text);
   }
 
-  /** Warnings, which do not prevent its use, displayed in its text. */
+  /** The warnings about the profile, displayed in its text. They do not prevent its use. */
   get warnings(): string {
     return guarded(() => this.inner.warnings);
   }
 
   /**
-   * The signals that must be read from a log to assess it with this profile. The report of a flight that was read with
-   * these has no others; that of a flight with all signals offers them all.
+   * The signals that must be read from a log to assess it with this profile. If a flight was read with these signals
+   * only, its report contains no others; if it was read with all signals, the report offers all of them.
    */
   get signals(): string[] {
     return guarded(() => this.inner.signals);
@@ -191,7 +194,7 @@ export class Flight {
     guarded(() => this.inner.writeCsv(write));
   }
 
-  /** Describes what is lost in the CSV: damaged parts of the log, and data beyond its limits. */
+  /** Warnings about data that the CSV lacks: damaged parts of the log, and data beyond its limits. */
   get warnings(): string[] {
     return guarded(() => this.inner.warnings());
   }
@@ -212,7 +215,7 @@ export class Assessment {
     return guarded(() => this.inner.json());
   }
 
-  /** Returns the same document without the steps, of which there may be many. */
+  /** Returns the document of {@link Assessment.json} without the steps, of which there may be many. */
   brief(): Brief {
     return JSON.parse(guarded(() => this.inner.brief())) as Brief;
   }
@@ -288,7 +291,10 @@ export class Comparison {
     return guarded(() => this.inner.html());
   }
 
-  /** Returns the body of that page, for a stretch of time since the start of each flight, or for all of it. */
+  /**
+   * Returns the body of the page of {@link Comparison.html}, for a stretch of time since the start of each flight, or
+   * for all of it.
+   */
   part(stretch?: Stretch): string {
     return guarded(() => this.inner.part(stretch?.start_s, stretch?.end_s));
   }

@@ -10,8 +10,8 @@ export * from './rules.js';
 export { version } from './wasm/rules.js';
 
 /**
- * Loads the WebAssembly modules for flights and rule sets: in a browser by `fetch`, in Node from their files. Whoever needs one
- * alone calls `startFlight` or `startRules`.
+ * Loads the WebAssembly modules for flights and rule sets: in a browser by `fetch`, in Node from their files. To load
+ * only one of them, call `startFlight` or `startRules` instead.
  */
 export async function start(): Promise<void> {
   await Promise.all([startFlight(), startRules()]);

@@ -6,12 +6,12 @@ export class Panic extends Error {
   override name = 'Panic';
 }
 
-/** The message of wasm-bindgen for an object without memory. */
+/** The message of wasm-bindgen for an object that was freed. */
 const FREED = 'null pointer passed to rust';
 
 /**
- * Wraps calls into a module: if one traps, a {@link Panic} with the message of the module is thrown, and if its object
- * was freed, an error that says so.
+ * Wraps calls into a module. If a call traps, the wrapper throws a {@link Panic} with the message of the module; if
+ * the object of the call was freed, it throws an error with this reason.
  */
 export function guard(panicMessage: () => string): <T>(call: () => T) => T {
   return (call) => {

@@ -1,4 +1,4 @@
-/** Values for the inputs of a rule set: by place or by name. */
+/** Values for the inputs of a rule set, by position or by name. */
 
 /** A known number, or `null` for an unknown one. NaN is unknown, too. */
 export type Known = number | null;
@@ -9,7 +9,7 @@ export type Point = ArrayLike<Known> | Readonly<Record<string, Known>>;
 /** A column for each input: in the order of the rule set, or by the names of the inputs. */
 export type Columns = readonly ArrayLike<Known>[] | Readonly<Record<string, ArrayLike<Known>>>;
 
-/** Returns a value as a number; NaN is unknown. `of` describes its place in messages. */
+/** Returns a value as a number; NaN is unknown. `of` returns the description of the value for messages. */
 export function numberOf(value: unknown, of: () => string): number {
   if (typeof value === 'number') return value;
   if (value === null || value === undefined) return NaN;

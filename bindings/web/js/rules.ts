@@ -58,21 +58,21 @@ export interface Edit {
 
 /** A handle for dragging a term. */
 export interface Handle {
-  /** The name of the parameter that it changes, such as `peak`. */
+  /** The name of the parameter that the handle changes, such as `peak`. */
   name: string;
   x: number;
   degree: number;
-  /** The minimum of its position. */
+  /** The smallest allowed `x`. */
   low: number;
   high: number;
-  /** Whether it can also be moved vertically. */
+  /** Whether the handle can also be moved vertically. */
   movesDegree: boolean;
 }
 
 /** A term as a curve of alternating x and degree. It is empty for a number, which is not a fuzzy set. */
 export interface DrawnTerm {
   name: string;
-  /** Its shape in the syntax of rule sets: `triangle: [0, 2, 4]`. */
+  /** The shape in the syntax of rule sets: `triangle: [0, 2, 4]`. */
   shape: string;
   curve: number[];
   /** The lower curve of an interval type-2 term, whose upper one is `curve`; otherwise empty. */
@@ -113,13 +113,13 @@ export interface TermFields {
 export interface Parts {
   /** The variables, inputs first; `at` is where the name is. */
   variables: { at: number; terms: TermFields[] }[];
-  /** The rules in words. */
+  /** The texts of the rules. */
   rules: string[];
   /** The shapes that a term can get. */
   shapes: string[];
 }
 
-/** A rule set or a profile as an editor shows it, whatever is wrong with it. Call {@link RuleText.free} when done. */
+/** The text of a rule set or a profile in an editor; it may contain errors. Call {@link RuleText.free} when done. */
 export class RuleText {
   readonly #text: wasm.RuleText;
 
@@ -181,12 +181,12 @@ export class RuleText {
     return parsed(() => this.#text.parts());
   }
 
-  /** The edits that add an input or output with two terms. */
+  /** Returns the edits that add an input or output with two terms. */
   addVariable(name: string, low: number, high: number, isOutput: boolean): Edit[] {
     return parsed(() => this.#text.addVariable(name, low, high, isOutput));
   }
 
-  /** The edits that add a term to a variable. */
+  /** Returns the edits that add a term to a variable. */
   addTerm(variable: number, name: string): Edit[] {
     return parsed(() => this.#text.addTerm(variable, name));
   }
@@ -211,22 +211,22 @@ export class RuleText {
     return parsed(() => this.#text.setShape(variable, term, shape));
   }
 
-  /** The edits that add a rule. */
+  /** Returns the edits that add a rule. */
   addRule(rule: string): Edit[] {
     return parsed(() => this.#text.addRule(rule));
   }
 
-  /** The edits that give a rule other words. */
+  /** Returns the edits that replace the text of a rule. */
   changeRule(rule: number, to: string): Edit[] {
     return parsed(() => this.#text.changeRule(rule, to));
   }
 
-  /** The edits that remove a variable, or a term of it, that no rule uses. */
+  /** Returns the edits that remove a variable, or a term of it, that no rule uses. */
   removeNamed(variable: number, term?: number): Edit[] {
     return parsed(() => this.#text.removeNamed(variable, term));
   }
 
-  /** The edits that remove a rule. */
+  /** Returns the edits that remove a rule. */
   removeRule(rule: number): Edit[] {
     return parsed(() => this.#text.removeRule(rule));
   }
@@ -277,7 +277,7 @@ export interface Value {
   clamped: boolean;
 }
 
-/** The content of a map: one output over one or two inputs, with the others held at a value. */
+/** The content of a map: one output over one or two inputs, while the other inputs have fixed values. */
 export interface View {
   /** The index of the output. */
   output: number;
@@ -289,7 +289,10 @@ export interface View {
   held: number[];
 }
 
-/** The cells of a map: for each point of the first axis one for each point of the second. NaN is unknown. */
+/**
+ * The cells of a map. Each array has one number for each combination of a point of the first axis and a point of the
+ * second, which varies fastest. NaN is unknown.
+ */
 export interface Cells {
   values: Float64Array;
   /** The largest firing strength. */
@@ -305,7 +308,10 @@ export interface ViewedRules {
   /** Whether a consequent is scaled by the firing strength, rather than cut. */
   scales: boolean;
   rules: {
-    /** `words` are hedges and term; `curve` is that of hedges, x and degree in turns, and empty without hedges. */
+    /**
+     * `words` are the hedges and the term. `curve` is the curve with the hedges, as alternating x and degree; it is
+     * empty without hedges.
+     */
     conditions: { variable: string; words: string; term: string | null; curve: number[] }[];
     conclusions: { output: string; words: string; term: string }[];
   }[];
@@ -338,8 +344,8 @@ export class RuleSet {
   }
 
   /**
-   * Returns the value of an output, by its index or name, at a point; NaN if it has none. This is the fastest way, for
-   * loops; {@link RuleSet.evaluate} also tells why there is no value.
+   * Returns the value of an output, by its index or name, at a point; NaN if it has none. This is the fastest way,
+   * for loops; {@link RuleSet.evaluate} also returns the coverage and the dominant rule.
    */
   value(point: Point, output: number | string = 0): number {
     const index = typeof output === 'number' ? output : this.#outputs.indexOf(output);
@@ -375,18 +381,21 @@ export class RuleSet {
     return numbers(inOrder(point, this.#inputs), (i) => `input \`${this.#inputs[i]}\``);
   }
 
-  /** What each rule reads and concludes. */
+  /** Returns all rules with the terms that they read and conclude. */
   viewed(): ViewedRules {
     return parsed(() => this.#set.viewed());
   }
 
-  /** The degrees of the propositions of all rules at a point, rule by rule. NaN where a proposition reads an output. */
+  /**
+   * Returns the degrees of the propositions of all rules at a point, rule by rule. NaN if a proposition reads an
+   * output.
+   */
   propositionDegrees(point: Point): Float64Array {
     const values = this.#numbers(point);
     return guarded(() => this.#set.propositionDegrees(values));
   }
 
-  /** Why the outputs at a point are what they are. */
+  /** Returns an explanation of the outputs at a point. */
   explain(point: Point): Explanation {
     const values = this.#numbers(point);
     return parsed(() => this.#set.explain(values));

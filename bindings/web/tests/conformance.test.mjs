@@ -1,4 +1,4 @@
-// Runs the conformance corpus of all languages through the package in Node: every outcome has the recorded bits.
+// Runs the conformance corpus of all languages through the package in Node: every outcome must have the recorded bits.
 
 import assert from 'node:assert/strict';
 import { readFile, readdir } from 'node:fs/promises';

@@ -37,7 +37,7 @@ async function opened(t, script) {
   return { page, complaints, says };
 }
 
-test('a worker assesses a log, and tells what it cannot read', async (t) => {
+test('a worker assesses a log, and reports a file that it cannot read', async (t) => {
   const { page, complaints, says } = await opened(t, 'page.js');
   await page.locator('input').setInputFiles(join(repository, 'examples/flights/steady.BIN'));
   await says('GOOD');
@@ -49,7 +49,7 @@ test('a worker assesses a log, and tells what it cannot read', async (t) => {
 test('a bundle finds its module', async (t) => {
   const loader = { '.wasm': 'file' };
   const { metafile } = await build({ absWorkingDir: folder, entryPoints: { out: 'bundled.js' }, bundle: true, format: 'esm', loader, outdir: folder, metafile: true });
-  // A page of rules carries no flight module.
+  // A page that uses only rule sets does not contain the flight module.
   assert.deepEqual(Object.keys(metafile.inputs).filter((name) => name.includes('flight')), []);
   const { complaints, says } = await opened(t, 'out.js');
   await says('22.98');

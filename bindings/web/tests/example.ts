@@ -1,4 +1,4 @@
-// Compiled by package.test.mjs: code of users, with the types of the package.
+// Code as users write it, with the types of the package; package.test.mjs compiles it.
 
 import { Flight, Panic, Profile, RuleSet, RuleText, start, type Diagnostic, type Moment, type Value } from 'flagred';
 

@@ -47,7 +47,7 @@ test('a log is read in pieces, plain or gzipped', () => {
   assert.equal(gzipped.brief().verdict, 'GOOD');
 });
 
-test('what cannot be read is an error with the words of the command line', () => {
+test('a log or profile that cannot be read is an error with the message of the command line', () => {
   const read = (name, text) => () => Flight.fromBytes(name, Buffer.from(text));
   assert.throws(read('empty.bin', ''), { message: /^`empty.bin` is empty\nhelp: / });
   assert.throws(read('page.html', '<html>'), { message: /^`page.html` is a web page, not a flight log\nhelp: / });
@@ -104,7 +104,7 @@ test('thresholds are changed in the text of a profile', () => {
   assert.throws(() => profile.withVerdict({ warn: { raise: { risk_pct: 40 } } }), { message: /held until 43, which is above 40\nhelp: / });
 });
 
-test('a rule set stands in for the one that a profile names', () => {
+test('a rule set replaces the one that a profile names', () => {
   const { text } = Profile.named('flagred-paper');
   assert.match(text, /rules: flagred-paper/);
   const rules = readFileSync(new URL('../../../rules/flagred-paper.yaml', import.meta.url), 'utf8');
@@ -113,7 +113,7 @@ test('a rule set stands in for the one that a profile names', () => {
   assert.throws(() => Profile.named('flagred-paper', rules.replace('rules:', 'ruls:')), { message: /did you mean `rules`/ });
 });
 
-test('a profile that needs more than was read is told', () => {
+test('`serves` reports whether a flight has the signals of a profile', () => {
   const battery = 'flagred: 1\nname: b\nrules: flagred\ninputs: {x: {last: wind_m_s}}\n';
   assert.throws(() => Profile.fromText('b.yaml', battery), { message: /b.yaml/ });
   assert.ok(flight.serves(profile));

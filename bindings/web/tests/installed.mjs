@@ -11,7 +11,10 @@ import { promisify } from 'node:util';
 export const repository = fileURLToPath(new URL('../../../', import.meta.url));
 export const run = promisify(execFile);
 
-/** Packs and installs the package; returns the folder and the packed files. It is removed after the tests of a file. */
+/**
+ * Packs the package and installs it in a folder. Returns the folder, which is removed after the tests of a file, and
+ * the packed files.
+ */
 export async function install() {
   const folder = await mkdtemp(join(tmpdir(), 'flagred-package-'));
   after(() => rm(folder, { recursive: true }));

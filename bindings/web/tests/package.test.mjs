@@ -22,7 +22,7 @@ const { folder, files, bytes } = await install();
 
 const SAID = ['0.1.0', 22.984937679969402, 'GOOD'];
 
-test('it packs what it needs and nothing else', () => {
+test('the package contains the files that it needs and no others', () => {
   for (const needed of ['index.js', 'index.d.ts', 'wasm/flight_bg.wasm', 'wasm/rules_bg.wasm', 'README.md', 'LICENSE-MIT', 'LICENSE-APACHE']) {
     assert.ok(files.includes(needed), `${needed} is not in it`);
   }
@@ -80,7 +80,7 @@ for (const resolution of ['nodenext', 'bundler']) {
     const compiled = run(tsc, [...flags, ...target, 'example.ts'], { cwd: folder });
     const told = await compiled.then(() => '', (failed) => failed.stdout);
     assert.equal(told, '');
-    // Wrong use is an error.
+    // Calls with wrong types are errors.
     await writeFile(join(folder, 'wrong.ts'), "import { RuleSet } from 'flagred'; new RuleSet(1);");
     await assert.rejects(run(tsc, [...flags, ...target, 'wrong.ts'], { cwd: folder }), { stdout: /TS2345/ });
   });

@@ -11,7 +11,7 @@ const { Panic, RuleSet, start } = await import(built('index.js'));
 const { guard } = await import(built('panic.js'));
 const { panicMessage, panicNow } = await import(built('wasm/rules.js'));
 
-test('what is refused is an error and no defect, and it goes on', async () => {
+test('refused content is an ordinary error, and the module remains usable', async () => {
   await start();
   const refused = (error) => error instanceof Error && !(error instanceof Panic) && error.message.length > 0;
   assert.throws(() => new RuleSet('fuzzy: 1\n'), refused);
@@ -21,7 +21,7 @@ test('what is refused is an error and no defect, and it goes on', async () => {
 });
 
 // This test is the last one: the module is unusable after it.
-test('a panic is caught, with its words', async () => {
+test('a panic is caught, with its message', async () => {
   await start();
   assert.throws(
     () => guard(panicMessage)(() => panicNow('the sky is falling')),

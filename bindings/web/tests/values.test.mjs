@@ -1,4 +1,5 @@
-// Values of rule sets as users give them: by place and by name, known, unknown and wrong; and how fast one is.
+// Values that users pass to rule sets: by position and by name; known, unknown and invalid. Also the time to compute a
+// value.
 
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
@@ -8,7 +9,7 @@ import { repository } from './installed.mjs';
 import { RuleSet, RuleText, startRules } from '../../../target/web/package/rules.js';
 import { Flight, startFlight } from '../../../target/web/package/flight.js';
 
-/** The maximum time of a processor for one value, in microseconds. */
+/** The maximum processor time for one value, in microseconds. */
 const MOST_US = 0.5;
 
 let text, rules;
@@ -32,7 +33,7 @@ test('a point is a list, an array of numbers, or has names', () => {
   }
 });
 
-test('what is unknown is unknown, never 0', () => {
+test('an unknown input makes the value unknown, never 0', () => {
   for (const point of [[8, null], [8, NaN], [null, 9], [8, undefined], { service: null, food: 9 }]) {
     const [{ value }] = rules.evaluate(point);
     assert.equal(value, null, JSON.stringify(point));
@@ -40,11 +41,11 @@ test('what is unknown is unknown, never 0', () => {
   }
   const [tips] = rules.evaluateColumns([[8, null], [9, 9]]);
   assert.ok(tips[0] > 22 && Number.isNaN(tips[1]));
-  // The next known point is not touched by it.
+  // An unknown point does not affect the point after it.
   assert.equal(rules.value([8, 9]), 22.984937679969402);
 });
 
-test('a wrong name, text or number of values is an error that says what to do', () => {
+test('a wrong name, text or number of values is an error with advice', () => {
   const all = [(point) => rules.evaluate(point), (point) => rules.value(point), (point) => rules.explain(point), (point) => rules.explanationSvg(point)];
   const wrong = [
     [['8', 9], 'input `service` is the text "8", not a number\nhelp: give a number, or `null` if it is unknown'],
@@ -97,11 +98,11 @@ test('a range, a unit and a term are changed in place', () => {
   open.free();
 });
 
-test('messages of several lines have lines', () => {
+test('messages of several lines keep their line ends', () => {
   assert.throws(() => new RuleSet('fuzzy: 1\n'), ({ message }) => message.includes('\n') && !message.includes('\\u{a}'));
 });
 
-test('a freed object says so', async () => {
+test('a call on a freed object is an error with this reason', async () => {
   await startFlight();
   const freed = { message: 'this object was released by `free()`\nhelp: create a new one' };
   const set = new RuleSet(text);

@@ -33,11 +33,12 @@ impl fmt::Display for Unformatted {
     }
 }
 
-/// Formats a text: indentation by two spaces, single spaces between words, rules with keywords in capitals. Meaning and
+/// Formats a text: indentation by two spaces, single spaces between words, rules with keywords in capitals. Meaning
+/// and
 /// comments are preserved.
 ///
 /// # Errors
-/// The reason why the text cannot be formatted.
+/// If the text cannot be formatted; the error is the reason.
 pub fn formatted(text: &str) -> Result<String, Unformatted> {
     let before = fuzzy::yaml::read(text).map_err(Unformatted::NotYaml)?;
     if !is_ours(&before) {
@@ -67,7 +68,8 @@ pub fn formatted(text: &str) -> Result<String, Unformatted> {
     }
 }
 
-/// Whether a tree has the first key of a rule set or a profile, with a number, or at least two keys of a rule set without that first key.
+/// Whether a tree is a rule set or a profile: it has the key `fuzzy` or `flagred` with a number, or the keys `inputs`
+/// and `outputs`.
 fn is_ours(tree: &Node) -> bool {
     let Value::Mapping(entries) = &tree.value else {
         return false;

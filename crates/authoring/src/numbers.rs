@@ -1,5 +1,5 @@
-//! Changes numbers in place in a text: of membership functions, and the weights of rules. Comments and layout are
-//! preserved.
+//! Changes numbers of a text in place: those of membership functions, and the weights of rules. Comments and layout
+//! are preserved.
 
 use std::ops::Range;
 

@@ -80,7 +80,7 @@ impl<'t> Changes<'t> {
         self.edits.push(Edit { span, text });
     }
 
-    /// Changes the node `written` where `after` differs from `before`. `None` if that is not possible in place.
+    /// Changes the node `written` where `after` differs from `before`; `None` if that is not possible in place.
     fn node(&mut self, written: &Node, before: &Node, after: &Node) -> Option<()> {
         if before == after {
             return Some(());
@@ -96,7 +96,7 @@ impl<'t> Changes<'t> {
             {
                 self.list(there, before, after)
             }
-            // A rule with keys in the text whose model has no keys but the rule itself.
+            // The rule is a mapping with the single key `rule` in the text, and a scalar in the model.
             (Value::Mapping(there), _, Value::Scalar(_)) => {
                 let (_, rule) = there
                     .iter()
@@ -202,7 +202,8 @@ impl<'t> Changes<'t> {
                 let indent = before.split('-').next()?;
                 let line = self.text.get(end..)?.find('\n').map(|length| end + length);
                 let at = line.unwrap_or(self.text.len());
-                // A new entry of a list that is itself an item of a list would need the indentation of its first line.
+                // In a list that is itself an item of a list, the first line has dashes in place of the indentation
+                // that the new entry needs.
                 let is_nested = before.matches('-').count() > mark.trim().len();
                 (!is_nested).then(|| self.replace(at..at, format!("\n{indent}{mark}{entry}")))
             }

@@ -27,8 +27,8 @@ pub struct Mapped<'a> {
 /// The maximum number of combinations of fixed values that are tried.
 const MOST_TRIED: usize = 1000;
 
-/// An input is fixed at another value than its middle only if the variation of the output then
-/// increases by this share of its range.
+/// An input is fixed at another value than the middle of its range only if the variation of the output then increases
+/// by at least this share of the output's range.
 const NOTICEABLE: f64 = 0.01;
 
 /// Evaluates the output at a point.
@@ -117,8 +117,8 @@ fn cell(mapped: &Mapped<'_>, outcome: &Outcome, point: &[f64]) -> Cell {
     }
 }
 
-/// The part of an input's range that is shown: the whole range, or twice the part in which the terms change if that is
-/// less than a quarter of the range.
+/// The part of an input's range that is shown: the whole range or, if the terms change only in less than a quarter of
+/// it, a part that is twice as wide as that.
 pub fn shown(variable: &Variable) -> Scale {
     let (low, high) = (variable.low, variable.high);
     let (first, last) = fuzzy::map::changing(variable);

@@ -53,7 +53,7 @@ pub fn places(document: &Document) -> Option<Places> {
 /// Returns the edits that add an input or output with two terms.
 ///
 /// # Errors
-/// The reason why the part cannot be added.
+/// If the part cannot be added; the error is the reason.
 pub fn add_variable(
     document: &Document,
     name: &str,
@@ -123,7 +123,7 @@ pub fn add_variable(
 /// Returns the edits that add a term to a variable, in the widest gap between its terms.
 ///
 /// # Errors
-/// The reason why the part cannot be added.
+/// If the part cannot be added; the error is the reason.
 pub fn add_term(document: &Document, variable: usize, name: &str) -> Result<Vec<Edit>, String> {
     let rules = readable(document)?;
     check_name(name)?;
@@ -198,7 +198,7 @@ pub fn add_term(document: &Document, variable: usize, name: &str) -> Result<Vec<
 /// Returns the edits that add a rule after the others.
 ///
 /// # Errors
-/// The reason why the part cannot be added.
+/// If the part cannot be added; the error is the reason.
 pub fn add_rule(document: &Document, rule: &str) -> Result<Vec<Edit>, String> {
     let rules = readable(document)?;
     fuzzy::rule::parse(rule).map_err(|error| error.message)?;
@@ -239,7 +239,7 @@ pub fn add_rule(document: &Document, rule: &str) -> Result<Vec<Edit>, String> {
 /// Returns the edits that replace the text of a rule. Its confidence, note and comments are kept.
 ///
 /// # Errors
-/// The reason why the rule cannot be changed.
+/// If the rule cannot be changed; the error is the reason.
 pub fn change_rule(document: &Document, rule: usize, to: &str) -> Result<Vec<Edit>, String> {
     let rules = readable(document)?;
     fuzzy::rule::parse(to).map_err(|error| error.message)?;
@@ -260,7 +260,7 @@ pub fn change_rule(document: &Document, rule: usize, to: &str) -> Result<Vec<Edi
 /// Returns the edits that remove a part that no rule uses.
 ///
 /// # Errors
-/// The reason why the part cannot be removed.
+/// If the part cannot be removed; the error is the reason.
 pub fn remove(document: &Document, part: Part) -> Result<Vec<Edit>, String> {
     let rules = readable(document)?;
     let (text, tree) = (document.text(), tree(document)?);
@@ -343,7 +343,7 @@ enum Change {
     Other(Part),
 }
 
-/// The names of variables and terms, and the rules, which must not change except for one part.
+/// The names of variables and terms, and the rules: an edit may change only one part of these.
 #[derive(PartialEq)]
 struct Outline {
     variables: Vec<(String, Vec<String>)>,
@@ -635,7 +635,7 @@ fn scalar(rule: &str) -> String {
     }
 }
 
-/// The index and the middle of the widest gap between positions and the ends of a range.
+/// The widest gap between positions, or between a position and an end of the range: its index and its middle.
 fn widest_gap(places: &[f64], low: f64, high: f64) -> (usize, f64) {
     let mut sorted: Vec<f64> = places.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -651,7 +651,7 @@ fn widest_gap(places: &[f64], low: f64, high: f64) -> (usize, f64) {
     (at, shortened((from + to) / 2.0, high - low))
 }
 
-/// The position of a shape, for comparison with others.
+/// The position of a shape, by which it is compared with others.
 fn middle(shape: &MembershipFunction) -> Option<f64> {
     let numbers: Vec<f64> = shape
         .parameters()
@@ -665,7 +665,7 @@ fn middle(shape: &MembershipFunction) -> Option<f64> {
     }
 }
 
-/// Rounds a number to three digits of the width of a range.
+/// Rounds a number to about a thousandth of the width of a range.
 fn shortened(value: f64, width: f64) -> f64 {
     let digits = (2.0 - width.log10().floor()).clamp(0.0, 15.0) as usize;
     format!("{value:.digits$}").parse().unwrap_or(value)

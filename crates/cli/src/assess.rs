@@ -97,7 +97,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut subjects = Vec::new();
     let documents: Vec<&Output> = html.iter().chain(&svg).collect();
     let mut out = Stdout::beside(&documents);
-    // Reports are written before standard output, whose reader may stop at any time.
+    // Output is queued: reports are written before standard output, whose reader may stop at any time.
     let mut waiting = Vec::new();
     let mut exit = Exit::Clean;
     let mut json = Vec::new();

@@ -8,7 +8,8 @@ use fuzzy::drawing::{visible, visible_lines};
 
 use crate::path::{self, RULES, has_ending};
 
-/// The result of a command that completed. For several inputs the last variant in this order counts, so that a finding is never hidden.
+/// The result of a command that completed. For several inputs, the result is the last of these variants that applies
+/// to an input, so that a finding is never hidden.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Exit {
     /// Nothing to report: 0.
@@ -61,7 +62,7 @@ impl Failure {
         }
     }
 
-    /// A failure whose findings have been shown already; only the exit code remains.
+    /// A failure whose findings have been shown already, so that only the exit code is needed.
     pub(crate) fn shown(code: u8) -> Self {
         Failure {
             code,
@@ -77,7 +78,8 @@ impl Failure {
         self
     }
 
-    /// As [`Failure::unreadable`], for an error of several lines, such as findings: all lines but the first become details.
+    /// Like [`Failure::unreadable`], for an error of several lines, such as findings: all lines but the first become
+    /// details.
     pub(crate) fn unusable(what: impl fmt::Display, error: &impl fmt::Display) -> Self {
         let error = error.to_string();
         let mut lines = error.lines();

@@ -11,7 +11,7 @@ use crate::failure::Failure;
 ///
 /// # Errors
 ///
-/// The flight cannot be used; `cannot` completes the message, such as `makes no rows`.
+/// If the flight cannot be used. The message contains `cannot`, such as `gives no rows`.
 pub(crate) fn open_complete(
     path: impl AsRef<Path>,
     names: &[&str],

@@ -109,7 +109,7 @@ pub fn converted(flight: &Flight) -> std::io::Result<Vec<u8>> {
     Ok(csv)
 }
 
-/// Returns the findings of `check`, their drawing, and the analysis if there is one.
+/// Returns the findings of `check`, the findings as text, and the analysis if there is one.
 pub fn checked(text: &str) -> (Findings, String, Option<check::Report>) {
     let source = Source::new(text);
     let (findings, report) = match examine(&source, &check::Options::default()) {
@@ -146,7 +146,7 @@ pub struct WatchOutput {
     pub packets: Vec<Vec<u8>>,
 }
 
-/// The vehicle that is followed.
+/// The state of the vehicle that is followed.
 #[derive(Debug, Clone, Copy)]
 pub struct VehicleState {
     /// The MAVLink system number of the vehicle.

@@ -205,7 +205,8 @@ fn help_of_help(arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
     arguments
 }
 
-/// Parses a command line. `-1` is a value of the option before it, whose parser has the better message.
+/// Parses a command line. A word such as `-1` counts as the value of the option before it, because the parser of that
+/// value reports a better error.
 fn parse(arguments: &[OsString]) -> Result<Arguments, clap::Error> {
     let mut command = Arguments::command().mut_subcommands(|subcommand| {
         subcommand.mut_args(|argument| {

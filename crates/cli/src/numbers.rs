@@ -7,7 +7,7 @@ pub(crate) fn whole<N>(low: N, high: N) -> impl Fn(&str) -> Result<N, String> + 
 where
     N: FromStr + PartialOrd + Display + Copy + Send + Sync + 'static,
 {
-    // A limit of the type only is not worth a mention.
+    // A limit that only the type imposes is not worth mentioning.
     let is_open = high.to_string().len() > 15;
     move |text| {
         let number = text.parse().ok();
@@ -78,7 +78,7 @@ fn fraction(text: &str, is_allowed: impl Fn(f64) -> bool, what: &str) -> Result<
 fn real(text: &str, is_allowed: impl Fn(f64) -> bool, what: &str) -> Result<f64, String> {
     let number = text.parse().ok();
     let number = number.filter(|number: &f64| number.is_finite() && is_allowed(*number));
-    // The number alone would be another value.
+    // Without this unit, the number would have another meaning.
     let is_other_unit = ["%", "ms", "us", "min", "h"]
         .iter()
         .any(|unit| text.ends_with(unit));

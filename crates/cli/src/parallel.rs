@@ -3,8 +3,8 @@
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
-/// Works on all items on all cores, and passes the results to `take` in the order of the items, until it returns false. Only the
-/// results of a few items per core are kept at a time.
+/// Processes all items on all cores, and passes the results to `take` in the order of the items, until it returns
+/// false. Only the results of a few items per core are kept at a time.
 ///
 /// Shows a progress bar on standard error if that is a terminal; `unit` names the items.
 pub(crate) fn in_order<T: Sync, R: Send>(

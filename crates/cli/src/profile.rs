@@ -26,7 +26,7 @@ pub(crate) fn load(name: &str) -> Result<Loaded, Failure> {
     Ok(loaded)
 }
 
-/// As [`load`], for a text that was read from a file already.
+/// Like [`load`], for a text that was already read from a file.
 pub(crate) fn from_source(path: &Path, source: Source) -> Result<Loaded, Failure> {
     let name = path.display().to_string();
     let is_stdin = path == Path::new("-");

@@ -112,7 +112,7 @@ impl OutputClaims {
     ///
     /// # Errors
     ///
-    /// The same claim is made in both directions.
+    /// If the same claim is made in both directions.
     pub(crate) fn monotone(&self) -> Result<Vec<Monotone>, Failure> {
         if let Some(both) = self
             .rising
@@ -130,7 +130,7 @@ impl OutputClaims {
             .collect())
     }
 
-    /// Adds advice to the failure of reading a file whose name is meant as a further input of a claim.
+    /// Adds advice to the error for a file that cannot be read: its name may be meant as a further input of a claim.
     pub(crate) fn or_input(&self, path: &Path, failure: Failure) -> Failure {
         let option = match (self.rising.is_empty(), self.falling.is_empty()) {
             _ if path.exists() || path.extension().is_some() => return failure,
@@ -162,7 +162,7 @@ impl OutputClaims {
     ///
     /// # Errors
     ///
-    /// As [`monotone`](Self::monotone), or a claim names another output.
+    /// As for [`monotone`](Self::monotone), or if a claim names another output.
     pub(crate) fn about(&self, output: &str) -> Result<Vec<Monotone>, Failure> {
         let mut claims = self.monotone()?;
         for claim in &mut claims {
@@ -343,7 +343,7 @@ pub(crate) fn in_range(read: Data, model: &Model) -> Data {
         |(value, input): &(&f64, &Variable)| !(input.low..=input.high).contains(*value);
     let mut kept = Vec::with_capacity(rows.len());
     for (row, place) in rows {
-        // The output, which comes last, may be outside: constants then stop at the end of its range.
+        // The output, which is the last value, may be outside its range: constants then stop at the end of the range.
         match row.values.iter().zip(&model.inputs).find(is_outside) {
             None => kept.push((row, place)),
             Some((value, input)) => {
@@ -386,7 +386,7 @@ pub(crate) fn in_columns(
     (data, refused)
 }
 
-/// Reports rows that cannot be used, of `rows` in all, as a failure.
+/// Returns the failure for rows that cannot be used; `rows` is the number of all rows.
 pub(crate) fn refuse(refused: &[String], rows: usize, purpose: &str) -> Failure {
     const SHOWN: usize = 20;
     let mut shown: Vec<String> = refused.iter().take(SHOWN).cloned().collect();

@@ -49,7 +49,7 @@ impl Read for BoundedReader {
     }
 }
 
-/// A table whose comment lines above the header are replaced by empty lines, so that line numbers stay right.
+/// A table whose comment lines above the header are replaced by empty lines, so that line numbers do not change.
 type UncommentedReader = io::Chain<Cursor<Vec<u8>>, BufReader<BoundedReader>>;
 
 fn uncommented(mut source: BufReader<BoundedReader>) -> io::Result<UncommentedReader> {
@@ -79,7 +79,7 @@ impl Reader {
         self.csv.read_byte_record(record)
     }
 
-    /// As [`Reader::read_byte_record`], for text.
+    /// Like [`Reader::read_byte_record`], for text.
     fn read_record(&mut self, record: &mut csv::StringRecord) -> csv::Result<bool> {
         self.left.store(LONGEST_ROW, Ordering::Relaxed);
         self.csv.read_record(record)
@@ -128,7 +128,7 @@ pub(crate) fn is_table(path: &Path) -> bool {
     has_ending(path, &["csv", "tsv"])
 }
 
-/// Refuses a table in place of the rule set, before `others`.
+/// Refuses a table in place of the rule set if a rule set is among the `others`.
 pub(crate) fn rule_set_first(
     command: &str,
     model: &Path,

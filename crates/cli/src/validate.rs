@@ -48,7 +48,7 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    /// Refuses a rule set in place of a flight: `eval` was meant.
+    /// Refuses a rule set in place of a flight, with the advice to use `eval`.
     pub(crate) fn are_flights(&self) -> Result<(), Failure> {
         let mut flights = self.flights.iter();
         let Some(rules) = flights.find(|path| output::has_ending(path, output::RULES)) else {

@@ -21,7 +21,7 @@ rules: [IF heat IS low THEN speed IS slow AND lamp IS off, IF heat IS high THEN 
 #[test]
 fn eval_keeps_the_previous_value_from_row_to_row() {
     let mut points = String::from("heat\n22\n10\n");
-    // There are more rows than in one block.
+    // More rows than fit into one block.
     for _ in 0..9000 {
         points += "22\n";
     }
@@ -54,7 +54,7 @@ fn explain_and_map_report_a_missing_previous_row() {
     assert!(errors.contains(note), "{errors}");
 }
 
-/// The paper's rules with an addition.
+/// The profile and the rules of the paper, with `more` before the rules.
 fn paper(more: &str) -> tempfile::TempDir {
     let rules = include_str!("../../../rules/flagred-paper.yaml").replace("\nrules:\n", more);
     let profile = include_str!("../../../rules/profiles/flagred-paper.yaml")

@@ -18,7 +18,7 @@ rules:
   - IF heat IS hot THEN speed IS fast
 ";
 
-/// The fan turns slowly up to 20 degrees, and fast from 30 degrees on; four rooms.
+/// Rows of a fan that turns slowly up to 20 degrees, and fast from 30 degrees on. The column `room` has four values.
 fn rows() -> String {
     let mut rows = String::from("heat,speed,is_loud,room\n");
     for i in 0..=80 {
@@ -144,7 +144,7 @@ fn a_start_that_is_not_monotone_is_refused() {
     );
 }
 
-/// All weights are 0, or values are so large that errors overflow: the existing file is kept.
+/// If all weights are 0, or values are so large that errors overflow, the existing file is kept.
 #[test]
 fn rows_without_information_or_with_overflow_are_refused() {
     let weightless = rows().replace(",1,", ",0,");
@@ -191,7 +191,7 @@ rules:
   - IF heat IS hot THEN speed IS fast
 ";
 
-/// The rows are on a line that reaches 14 where `hot` is highest.
+/// The rows are on a line that would reach 14, beyond the range, at the peak of `hot`.
 #[test]
 fn constants_stay_in_the_range_by_default() {
     let mut rows = String::from("heat,speed\n");
@@ -214,7 +214,7 @@ fn constants_stay_in_the_range_by_default() {
     assert!(written.contains("fast: {constant: 10}"), "{written}");
 }
 
-/// The rows use other units than the range: the constants stop at its end, and the report explains why.
+/// The rows have another unit than the range: the constants stop at the end of the range, and the report explains why.
 #[test]
 fn constants_that_the_rows_pull_out_of_the_range_are_reported() {
     let rows = "heat,speed\n5,1400\n15,1500\n25,1600\n35,1700\n";

@@ -21,10 +21,11 @@ pub(crate) struct Alarms {
     /// Alarms in calm stretches, and in flights whose error never exceeds [`ORDINARY_DEG`].
     pub(crate) calm: NeedlessAlarms,
     pub(crate) ordinary: NeedlessAlarms,
-    /// Upsets found by any alarm, and by FAIL only.
+    /// The upsets, classified by the alarms (WARN or FAIL) around them.
     pub(crate) upsets: Upsets,
+    /// The upsets, classified by FAIL only.
     pub(crate) upsets_by_fail: Upsets,
-    /// Calm stretches and upsets of each kind.
+    /// The alarms in calm stretches and the upsets, for each kind of flight.
     pub(crate) by_kind: Vec<(String, NeedlessAlarms, Upsets)>,
 }
 
@@ -58,13 +59,13 @@ pub(crate) fn kinds(records: &[Record]) -> Vec<&str> {
     kinds
 }
 
-/// A flight without an upset is ordinary if its error over a second never exceeds this, in degrees, ...
+/// The largest attitude error over a second, in degrees, that an ordinary flight may have.
 const ORDINARY_DEG: f64 = 5.0;
 
-/// ... and its tilt is less than this, in degrees.
+/// A flight whose tilt reaches this, in degrees, is not ordinary.
 const STEEP_DEG: f64 = 45.0;
 
-/// The time in the air of an ordinary flight.
+/// The time in the air if the flight is ordinary (without an upset, a large error or a steep tilt); otherwise none.
 fn ordinary(record: &Record) -> &[Span] {
     let is_ordinary = record.upsets.is_empty()
         && record.largest_error_deg.is_some_and(|e| e <= ORDINARY_DEG)
@@ -76,24 +77,25 @@ fn calm(record: &Record) -> &[Span] {
     &record.calm
 }
 
-/// A figure with its interval over vehicles.
+/// A figure with its confidence interval, from resampled vehicles.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Figure {
     pub(crate) value: f64,
     pub(crate) interval: Option<Interval>,
 }
 
-/// The alarms of a profile in times without danger.
+/// The alarms of a profile in times without danger: calm stretches or ordinary flights.
 pub(crate) struct NeedlessAlarms {
-    /// The number of flights with such times and a verdict, and of those without a verdict.
+    /// The number of flights that contain such times and have a verdict.
     pub(crate) flights: usize,
+    /// The number of flights that contain such times, but have no verdict.
     pub(crate) not_assessed: usize,
     pub(crate) hours: f64,
-    /// The number of flights with GOOD, WARN, FAIL.
+    /// The number of these flights with the verdict GOOD, WARN and FAIL.
     pub(crate) verdicts: [usize; 3],
     pub(crate) alarms: usize,
     pub(crate) fails: usize,
-    /// Alarms per hour; `None` without a flight.
+    /// Alarms per hour; `None` if there is no flight with a verdict.
     pub(crate) alarms_per_hour: Option<Figure>,
     pub(crate) fails_per_hour: Option<Figure>,
     /// The share of the time during which an alarm was on.
@@ -119,7 +121,7 @@ fn column(level: Level) -> usize {
 }
 
 impl NeedlessAlarms {
-    /// Counts the alarms of a profile in these times of flights.
+    /// Counts the alarms of a profile in the given times of each flight.
     pub(crate) fn of<'a>(
         profile: usize,
         times: fn(&Record) -> &[Span],
@@ -188,24 +190,24 @@ impl NeedlessAlarms {
     }
 }
 
-/// The upsets of flights, and how the alarms of a profile found them.
+/// The numbers of upsets, by whether an alarm of a profile was on before them or began shortly after them.
 #[derive(Default, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct Upsets {
-    /// Upsets with an alarm on in the 10 s before.
+    /// The number of upsets with an alarm on in the 10 s before.
     pub(crate) before: usize,
-    /// Upsets with an alarm raised within 1 s after.
+    /// The number of upsets with an alarm raised within 1 s after.
     pub(crate) within_1_s: usize,
-    /// Upsets without an alarm in that time.
+    /// The number of upsets without an alarm from 10 s before to 1 s after.
     pub(crate) never: usize,
-    /// Upsets of flights without a verdict.
+    /// The number of upsets in flights without a verdict.
     pub(crate) not_assessed: usize,
     /// The median time from an alarm to its upset, in seconds.
     pub(crate) lead_s_median: Option<f64>,
 }
 
 impl Upsets {
-    /// Counts the upsets that a profile found; `alarms` selects the alarms that count.
+    /// Classifies the upsets by the alarms of a profile and counts them; `alarms` selects the alarms that count.
     pub(crate) fn of<'a>(
         profile: usize,
         alarms: fn(&ProfileResult) -> &[Span],

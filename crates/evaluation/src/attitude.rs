@@ -1,4 +1,4 @@
-//! The attitude error over a time, and the risk that rules are learned from.
+//! The attitude error over a period, and the risk from which rules are learned.
 
 use flagred_flightlog::Attitude;
 

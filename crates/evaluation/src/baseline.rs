@@ -33,7 +33,7 @@ pub struct Baseline {
 /// How the statistics of single motors are combined into one value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PerMotor {
-    /// The mean of the motors.
+    /// The mean over the motors.
     Mean,
     /// The smallest value.
     Min,
@@ -164,7 +164,7 @@ pub struct BaselineObserver<'a> {
     pooled: Observer,
     /// For each motor, the sources of the baselines with [`PerMotor`], in their order.
     motors: Vec<Observer>,
-    /// The index of each baseline in these observers.
+    /// The index of each baseline in `pooled` or in each of `motors`; `None` if its signal is not available.
     places: Vec<Option<usize>>,
 }
 

@@ -5,22 +5,24 @@ use flagred_flightlog::Attitude;
 
 use crate::{critical::ErrorRecord, span::Span};
 
-/// Calm begins this time after take-off, in seconds, ...
+/// The time in seconds after take-off at which calm can begin.
 const AFTER_TAKE_OFF_S: f64 = 5.0;
 
-/// ... is this far away from critical errors, from tilts over [`TILT_DEG`] and from attitudes that are unknown for over
-/// [`UNKNOWN_S`], in seconds, ...
+/// The minimum distance of a calm stretch from critical errors, steep tilts and unknown attitudes, in seconds.
 const AWAY_S: f64 = 10.0;
 
+/// A tilt over this, in degrees, is steep.
 const TILT_DEG: f64 = 45.0;
 
+/// Attitudes that are unknown for at most this time, in seconds, do not end a calm stretch.
 const UNKNOWN_S: f64 = 1.0;
 
-/// ... and lasts at least this long, in seconds.
+/// The minimum length of a calm stretch, in seconds.
 const SHORTEST_S: f64 = 20.0;
 
 /// Returns the calm stretches of a time in the air: at least 20 s long, from 5 s after take-off, and 10 s away from any
-/// attitude error over [`CRITICAL_ERROR_DEG`] and any tilt over 45 degrees. An alarm in a calm stretch is needless.
+/// attitude error over [`CRITICAL_ERROR_DEG`], any tilt over 45 degrees and any time of over 1 s without a known
+/// attitude. An alarm in a calm stretch is needless.
 ///
 /// # Example: one error of 20 degrees in a minute
 ///
@@ -76,7 +78,8 @@ pub fn calm_stretches(errors: &ErrorRecord, attitudes: &[(f64, Attitude)], air: 
 mod tests {
     use super::*;
 
-    /// Two minutes at 25 Hz with an error, a tilt and no attitude in the given times.
+    /// The calm stretches of a flight of two minutes at 25 Hz that has an error, a steep tilt and no attitude in the
+    /// given times.
     fn calm(error: (f64, f64), tilt: (f64, f64), none: (f64, f64)) -> Vec<[f64; 2]> {
         let is_in = |t_s: f64, (from_s, to_s): (f64, f64)| (from_s..to_s).contains(&t_s);
         let attitudes: Vec<(f64, Attitude)> = (0..=3000)

@@ -39,7 +39,7 @@ pub fn complete_options(names: &[&str]) -> Options {
 /// the reader must not have left anything out.
 ///
 /// # Errors
-/// The missing information.
+/// Returns the missing information.
 pub fn complete(flight: &Flight) -> Result<(), Incomplete> {
     let left_out = &flight.report.left_out;
     if left_out.messages > 0 || left_out.changes > 0 {

@@ -18,7 +18,7 @@ const SQUARED_ERROR: &str = "squared_error_deg2";
 /// The minimum duration of an episode, in seconds.
 const SHORTEST_EPISODE_S: f64 = 1.0;
 
-/// A tolerance in seconds; timestamps are in microseconds.
+/// A tolerance for rounding errors, in seconds. Timestamps are in microseconds.
 const ROUNDING_S: f64 = 1e-6;
 
 /// The attitude error of a flight over time, and its critical episodes.
@@ -81,7 +81,7 @@ impl ErrorRecord {
                 continue;
             }
             second.push(t_s, held_s, &[], &[squared]);
-            // A second that lacks about half the time of a sample counts as full.
+            // A window counts as full if it lacks at most half the time between two samples.
             let full_s = ERROR_WINDOW_S - held_s / 2.0 - ROUNDING_S;
             let Some(mean) = second.value(0).filter(|mean| mean.covered_s >= full_s) else {
                 continue;
@@ -171,7 +171,8 @@ mod tests {
 
     #[test]
     fn an_episode_starts_when_the_error_of_a_second_is_over_the_limit_and_lasts_one() {
-        // 8 degrees for a share x of the second result in 8 sqrt(x): over 5 from x = 0.39 on.
+        // An error of 8 degrees during a share x of the second gives a root mean square of 8 sqrt(x), which is over 5
+        // from x = 0.39 on.
         for rate in [10, 25, 100] {
             let record = record(rate, &[(10.0, 11.0), (20.0, 21.5), (40.0, 45.0)]);
             let spans: Vec<(f64, f64)> = record
@@ -190,7 +191,7 @@ mod tests {
                 assert!((to_s - ends_s).abs() < step_s, "{rate} Hz: {spans:?}");
             }
         }
-        // Over the limit, but only for 0.7 s.
+        // The root mean square exceeds the limit, but only for 0.7 s.
         assert_eq!(record(25, &[(10.0, 10.55)]).episodes(), []);
         assert_eq!(
             record(25, &[(10.0, 10.55)]).critical_within(9.0, 5.0),
@@ -251,7 +252,7 @@ mod tests {
             (t_s, if known { level } else { lost })
         }));
         assert_eq!(record.critical_within(11.0, 5.0), None);
-        // The whole second must be known before its mean is.
+        // The mean over a second is known only if the attitude is known throughout that second.
         assert_eq!(record.critical_within(19.5, 1.0), None);
         assert_eq!(record.critical_within(19.5, 2.0), Some(false));
     }

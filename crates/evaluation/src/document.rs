@@ -52,18 +52,17 @@ struct EstimatorDocument<'a> {
     description: &'a str,
     #[serde(flatten)]
     all: ScoresDocument,
-    /// The scores over steps without a critical error in the 5 s before. Only for steps, because flights have no time
-    /// before.
+    /// The scores over the steps that follow 5 s without a critical error. Absent if the cases are whole flights.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "ScoresDocument"))]
     quiet: Option<ScoresDocument>,
-    /// The scores over steps without a critical error in the 10 s before.
+    /// The scores over the steps that follow 10 s without a critical error. Absent if the cases are whole flights.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "ScoresDocument"))]
     onset: Option<ScoresDocument>,
     by_vehicle: Vec<VehicleScoresDocument<'a>>,
     by_kind: Vec<FlightKindDocument<'a, ScoresDocument>>,
-    /// The reliability of a risk in %, by tenths of the scale; null for other scores.
+    /// For risks in %, the reliability by tenths of the scale; null for other scores.
     reliability: Option<Vec<BandDocument>>,
     /// The warnings, only for profiles.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -100,13 +99,14 @@ struct ScoresDocument {
     auc_interval: Option<[f64; 2]>,
     /// The area under the precision-recall curve.
     pr_auc: Option<f64>,
-    /// The 95 % interval of this area.
+    /// The 95 % interval of this area, by resampling whole flights.
     pr_auc_interval: Option<[f64; 2]>,
     /// The reason why there is no area, such as `no critical step`.
     no_auc: Option<String>,
-    /// The mean over the flights that have both critical and other cases.
+    /// The mean area under the ROC curve within single flights, over the flights that have both critical and other
+    /// cases.
     within_flight_auc: Option<f64>,
-    /// The 95 % interval of this area.
+    /// The 95 % interval of this mean, by resampling whole flights.
     within_flight_auc_interval: Option<[f64; 2]>,
     /// The number of flights in this mean.
     within_flight_flights: usize,
@@ -125,7 +125,7 @@ struct BandDocument {
     from_pct: f64,
     /// The upper end in %, exclusive except for 100.
     to_pct: f64,
-    /// The number of cases with such a risk.
+    /// The number of cases whose risk is in the band.
     cases: u64,
     /// The number of these cases that were critical.
     critical: u64,
@@ -162,9 +162,9 @@ struct AlarmsDocument<'a> {
     /// Alarms in ordinary flights: the error, as a root mean square over 1 s, is never above 5 degrees, the tilt is
     /// below 45 degrees, and there is no upset.
     ordinary_flights: NeedlessAlarmsDocument,
-    /// The upsets of flights, found by any alarm.
+    /// The upsets, classified by the alarms (WARN or FAIL) around them.
     upsets: UpsetsDocument<'a>,
-    /// The upsets of flights, found by FAIL only.
+    /// The upsets, classified by FAIL only.
     upsets_by_fail: UpsetsDocument<'a>,
     by_kind: Vec<FlightKindDocument<'a, AlarmsOfKind<'a>>>,
 }
@@ -179,11 +179,11 @@ struct AlarmsOfKind<'a> {
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct NeedlessAlarmsDocument {
-    /// The number of flights with such times and a verdict.
+    /// The number of flights that contain such times (calm stretches or ordinary flights) and have a verdict.
     flights: usize,
-    /// The number of flights with such times whose verdict is NA.
+    /// The number of flights that contain such times, but have the verdict NA.
     not_assessed: usize,
-    /// The length of these times in hours.
+    /// The total length of these times, in hours.
     hours: f64,
     /// The number of flights with each verdict.
     verdicts: Verdicts,

@@ -17,7 +17,7 @@ pub(crate) struct NamedEstimator {
 }
 
 impl Default for Estimators {
-    /// Only the baselines.
+    /// Creates estimators without profiles: only the baselines.
     fn default() -> Estimators {
         Estimators {
             profiles: Vec::new(),

@@ -23,13 +23,13 @@ use crate::{
 /// The distance between steps, in seconds.
 const STEP_S: f64 = 0.5;
 
-/// If the log does not define the judged time, steps begin this time after take-off, in seconds, when the shortest
-/// window is full.
+/// Steps begin this time after take-off, in seconds, unless the log defines the judged time. The shortest window is
+/// then full.
 const FIRST_STEP_S: f64 = 2.0;
 
-/// A step is quiet if there was no critical error in this time before it, in seconds, and an onset if there was none in
-/// the second of these times.
+/// A step is quiet if there was no critical error in this time before it, in seconds.
 const QUIET_S: f64 = 5.0;
+/// A step is an onset if there was no critical error in this time before it, in seconds.
 const ONSET_S: f64 = 10.0;
 
 /// A baseline is reset after this time without a sample, in seconds.
@@ -49,8 +49,9 @@ pub struct Record {
     pub(crate) air: Vec<Span>,
     /// The calm stretches.
     pub(crate) calm: Vec<Span>,
-    /// The largest attitude error over a second, and the largest tilt, in the air, in degrees.
+    /// The largest attitude error over a second in the air, in degrees.
     pub(crate) largest_error_deg: Option<f64>,
+    /// The largest tilt in the air, in degrees.
     pub(crate) largest_tilt_deg: Option<f64>,
     pub(crate) upsets: Vec<Upset>,
     pub(crate) steps: Vec<ScoredTime>,
@@ -58,7 +59,7 @@ pub struct Record {
     pub(crate) results: Vec<ProfileResult>,
 }
 
-/// The first upset in a time in the air.
+/// The first upset during one time in the air.
 pub(crate) struct Upset {
     pub(crate) t_s: f64,
     pub(crate) air: Span,
@@ -79,7 +80,8 @@ pub(crate) struct ScoredTime {
 pub(crate) struct ProfileResult {
     /// The verdict; `None` is NA.
     pub(crate) verdict: Option<Level>,
-    /// The periods of WARN or FAIL, from raised until last reached. A WARN that is raised to FAIL counts as one.
+    /// The periods of WARN or FAIL, each from the time a level is raised until it is last reached. A WARN that is
+    /// raised to FAIL counts as one period.
     pub(crate) alarms: Vec<Span>,
     pub(crate) fails: Vec<Span>,
     /// The periods at which a level was on, matched with the episodes.
@@ -125,7 +127,7 @@ impl Record {
     /// Reads a log and evaluates the flight.
     ///
     /// # Errors
-    /// If the file cannot be read or is not a flight log, and as [`Record::new`].
+    /// If the file cannot be read or is not a flight log, and in the cases of [`Record::new`].
     pub fn read(
         path: &Path,
         estimators: &Estimators,
@@ -274,9 +276,8 @@ struct ProfileState {
     is_warning: bool,
 }
 
-/// Passes the samples of a flight to all estimators and sets the scores of the steps. The score of an estimator at a
-/// step is the one after the latest sample. Returns the results of each profile, with the periods at which a level was
-/// on.
+/// Passes the samples of a flight to all estimators and stores in each step the scores after the latest sample before
+/// it. Returns the results of each profile, with the periods at which a level was on.
 fn follow(
     flight: &Flight,
     estimators: &Estimators,

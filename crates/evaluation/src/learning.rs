@@ -1,4 +1,4 @@
-//! Errors of learned rules: on samples that were not used for learning, and where a rule is missing.
+//! Errors of learned rules: on samples that were not used for learning, and in regions whose rule is missing.
 
 use std::collections::BTreeMap;
 
@@ -34,7 +34,7 @@ pub struct Errors {
     /// The mean absolute error.
     #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub mean_absolute: f64,
-    /// The mean of prediction minus truth: above 0 the predictions are too high.
+    /// The mean of prediction minus truth; above 0 if the predictions are too high.
     #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub bias: f64,
 }
@@ -65,7 +65,7 @@ impl Tally {
     }
 
     fn errors(&self) -> Errors {
-        // NaN without rows: an error of 0 would be the best possible.
+        // Without rows the means are NaN, because an error of 0 would look like the best possible.
         let mean = |sum: f64| sum / self.weight;
         Errors {
             rows: self.rows,
@@ -100,7 +100,7 @@ pub enum ExamineError {
     },
 }
 
-/// A rule set with filled gaps, which predicts at any inputs.
+/// A rule set whose gaps are filled, so that it has a prediction for any inputs.
 struct Predictor {
     /// `None` without rules; then there are no predictions.
     rules: Option<Rules>,
@@ -128,7 +128,7 @@ impl Predictor {
         Ok(Predictor { rules: Some(rules) })
     }
 
-    /// The outcome of the rules, without filling.
+    /// The outcome of the rules before gaps are filled.
     fn outcome(&mut self, inputs: &[f64]) -> Result<Outcome, ExamineError> {
         let Some(rules) = &mut self.rules else {
             return Ok(Outcome::UNDEFINED);
@@ -238,7 +238,8 @@ fn parts(rows: &[Row]) -> Vec<u32> {
     rows.iter()
         .map(|row| match row.group {
             Some(group) if groups.len() <= MOST_GROUPS => group,
-            // By rank: otherwise groups whose numbers have the same last digit would all be in one fold.
+            // The rank of the group selects the fold: with the number itself, groups with the same last digit would
+            // share a fold.
             Some(group) => groups.partition_point(|other| *other < group) as u32 % FOLDS,
             None => (fingerprint(&row.values) % u64::from(FOLDS)) as u32,
         })
@@ -253,14 +254,14 @@ fn fingerprint(values: &[f64]) -> u64 {
     let hash = bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
     });
-    // The low bits of the product depend only on the low bits of the bytes.
+    // The low bits of the product depend only on the low bits of the bytes, so the high bits are mixed in.
     hash ^ (hash >> 32)
 }
 
 /// The errors of each gap method in cells whose rule was removed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GapComparison {
-    /// The number of rules that were removed, one at a time: those with samples in the gap they leave.
+    /// The number of rules that were removed, one at a time. Rules whose gap contains no samples are not removed.
     pub rules: u32,
     /// The errors without removing any rule: a lower bound for the methods.
     pub with_the_rule: MethodErrors,
@@ -268,14 +269,14 @@ pub struct GapComparison {
     pub methods: Vec<(GapMethod, MethodErrors)>,
 }
 
-/// Errors over all rows, and the mean over rules of the errors of their rows.
+/// Errors in which each row counts the same, and an error in which each rule counts the same.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MethodErrors {
     /// Errors in which each row counts the same.
     pub by_row: Errors,
-    /// The mean over rules of their mean absolute error, so that each rule counts the same, however many samples it
-    /// has. Rules without any predicted row do not count; NaN if there are no others.
+    /// The mean over the removed rules of their mean absolute error, so that each rule counts the same, however many
+    /// samples it has. Rules without a predicted row are ignored; NaN if no other rule remains.
     #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub by_rule_mean_absolute: f64,
 }

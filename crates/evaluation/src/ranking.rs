@@ -98,9 +98,9 @@ pub struct WithinGroups {
 /// A point of the receiver operating characteristic.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RocPoint {
-    /// The share of the other predictions with a score at or above this point.
+    /// The share of the predictions without a critical outcome whose score is at or above this point.
     pub false_positive_rate: f64,
-    /// The share of the critical predictions with a score at or above this point.
+    /// The share of the predictions with a critical outcome whose score is at or above this point.
     pub true_positive_rate: f64,
 }
 
@@ -184,7 +184,7 @@ impl Ranking {
     /// # Ok::<(), &str>(())
     /// ```
     pub fn within_groups(&self, resamples: usize, seed: u64) -> Option<WithinGroups> {
-        // Ties are those of all predictions: each group's counts are added when the tie ends.
+        // The order and the ties are those of all predictions. The counts of a group are added when the tie ends.
         let mut counts = vec![GroupCount::default(); self.groups];
         let mut tied = Vec::new();
         for prediction in &self.ranked {
@@ -360,7 +360,7 @@ mod tests {
         let ranking = Ranking::new(predictions());
         let areas = ranking.areas().unwrap();
         assert_eq!((ranking.len(), ranking.critical()), (200, 68));
-        // roc_auc_score and average_precision_score of scikit-learn 1.9.1.
+        // Computed by roc_auc_score and average_precision_score of scikit-learn 1.9.1.
         approx::assert_abs_diff_eq!(areas.roc, 0.731_896_167_557_932_2, epsilon = 1e-12);
         approx::assert_abs_diff_eq!(
             areas.precision_recall,
@@ -373,7 +373,7 @@ mod tests {
     fn intervals_agree_with_a_bootstrap_in_numpy() {
         let ranking = Ranking::new(predictions());
         let found = ranking.bootstrap(2000, 7).unwrap();
-        // 20,000 resamples of the ten groups with numpy's own generator, areas by scikit-learn.
+        // Computed from 20,000 resamples of the ten groups by numpy's own generator, with the areas of scikit-learn.
         for (found, expected) in [
             (found.roc.low, 0.6782),
             (found.roc.high, 0.7840),
@@ -453,7 +453,7 @@ mod tests {
             match ranking.areas() {
                 Some(areas) => {
                     prop_assert!((areas.roc - in_order / pairs).abs() < 1e-12);
-                    // The curve itself has this area under it.
+                    // The area under the curve itself, by the trapezoidal rule, is the same.
                     let trapezoids: f64 = ranking.roc(1_000_000).windows(2).map(|p| {
                         (p[1].false_positive_rate - p[0].false_positive_rate)
                             * (p[0].true_positive_rate + p[1].true_positive_rate) / 2.0

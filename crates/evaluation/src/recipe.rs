@@ -32,7 +32,7 @@ impl Recipe {
     }
 }
 
-/// The recipe of a source, if it can be computed from such tables.
+/// The recipe of a source; `None` if it cannot be computed from means and standard deviations.
 pub fn recipe(source: &Source) -> Option<Recipe> {
     let spread: Make = |values, low, high| values[0] / (high - low);
     let (columns, make): (&'static [&'static str], Make) =

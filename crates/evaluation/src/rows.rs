@@ -39,7 +39,7 @@ impl<E> FlightTable<'_, E> {
 enum Column {
     /// A separate column.
     Own(usize),
-    /// Columns from which it is computed.
+    /// Columns from which the value is computed.
     Of(Recipe),
     /// No column, because the rules do not read the input.
     Unread,

@@ -47,6 +47,7 @@ pub(crate) struct Scores {
     pub(crate) critical: usize,
     /// The areas; `None` unless there are both critical and other cases.
     pub(crate) areas: Option<Areas>,
+    /// The 95 % intervals of the areas.
     pub(crate) intervals: Option<Intervals>,
     /// The mean area within single flights; `None` if no flight has both critical and other cases.
     pub(crate) within: Option<WithinGroups>,
@@ -72,12 +73,13 @@ pub(crate) struct ProfileScores {
     pub(crate) description: String,
     /// The scores over all kinds except [`APART`].
     pub(crate) all: Scores,
-    /// The scores over the quiet steps of these kinds, and over the onsets.
+    /// The scores over the quiet steps of these kinds.
     pub(crate) quiet: Scores,
+    /// The scores over the onsets of these kinds.
     pub(crate) onset: Scores,
     pub(crate) by_vehicle: Vec<(String, Scores)>,
     pub(crate) by_kind: Vec<(String, Scores)>,
-    /// The reliability of risks in %; other scores have no scale.
+    /// The reliability, only for risks in %: other scores have no fixed scale.
     pub(crate) reliability: Option<[Band; 10]>,
     pub(crate) roc: Vec<RocPoint>,
 }

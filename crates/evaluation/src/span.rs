@@ -49,10 +49,9 @@ impl Span {
         (to_s - self.from_s.max(other.from_s)).max(0.0)
     }
 
-    /// Extends `spans` by a time at which a condition is true or false: the last span grows or ends, or a new one
-    /// begins.
+    /// Extends `spans` by one time. If `is_so`, the last span grows or a new one begins; otherwise the last span ends.
     ///
-    /// `open` stores whether the condition was true at the time before.
+    /// `open` stores the `is_so` of the previous time.
     pub fn follow(spans: &mut Vec<Span>, open: &mut bool, t_s: f64, is_so: bool) {
         match spans.last_mut().filter(|_| *open && is_so) {
             Some(span) => span.to_s = t_s,

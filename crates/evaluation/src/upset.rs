@@ -4,17 +4,17 @@ use flagred_flightlog::Attitude;
 
 use crate::{critical::ErrorRecord, span::Span};
 
-/// The attitude is lost if its error, root mean square over a second, exceeds this, in degrees, ...
+/// The attitude is lost if its error, as a root mean square over a second, exceeds this, in degrees.
 const ERROR_DEG: f64 = 30.0;
 
-/// ... or if the vehicle tilts by more than this, in degrees, ...
+/// The attitude is also lost if the vehicle tilts by more than this, in degrees, without being commanded to.
 const TILT_DEG: f64 = 60.0;
 
-/// ... while its set point tilts by less than this.
+/// A tilt counts as commanded if the set point tilts by at least this, in degrees.
 const COMMANDED_TILT_DEG: f64 = 50.0;
 
-/// A set point that tilts by more than [`TILT_DEG`] is an intentional flip, which is excluded with this time around it,
-/// in seconds.
+/// The time around an intentional flip that is ignored, in seconds. A flip is a set point that tilts by more than
+/// [`TILT_DEG`].
 const FLIP_S: f64 = 2.0;
 
 /// An alarm counts as before an upset if it was on within this time before it, in seconds.
@@ -36,19 +36,19 @@ const AFTER_S: f64 = 1.0;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum UpsetAlarm {
-    /// An alarm was on at some time in the 10 s before.
+    /// An alarm was on at some time in the 10 s before the upset.
     Before {
-        /// How long before the upset that alarm was raised, in seconds; not counted before take-off.
+        /// How long before the upset this alarm was raised, in seconds. Time before the take-off does not count.
         lead_s: f64,
     },
-    /// An alarm was raised within 1 s after.
+    /// No alarm was on before the upset, but one was raised within 1 s after it.
     After,
-    /// Neither of these.
+    /// No alarm was on or raised from 10 s before the upset to 1 s after it.
     Never,
 }
 
 impl UpsetAlarm {
-    /// Classifies an upset at `upset_s` in a time in the air, by the alarms of the flight.
+    /// Classifies an upset at `upset_s`, during the flight `air`, by the alarms.
     pub fn of(upset_s: f64, air: Span, alarms: &[Span]) -> UpsetAlarm {
         let earliest_s = air.from_s.max(upset_s - BEFORE_S);
         let before = alarms
@@ -69,10 +69,11 @@ impl UpsetAlarm {
     }
 }
 
-/// The time at which the attitude was first lost in a time in the air: the error over a second exceeds 30 degrees, or
-/// the vehicle tilts by more than 60 degrees while its set point tilts by less than 50. `None` if it never was.
+/// Returns the time at which the attitude was first lost during the flight `air`: the error over a second exceeds 30
+/// degrees, or the vehicle tilts by more than 60 degrees while its set point tilts by less than 50. `None` if it never
+/// was.
 ///
-/// Intentional flips do not count: times within 2 s of a set point that tilts by more than 60 degrees.
+/// Intentional flips are ignored: the times within 2 s of a set point that tilts by more than 60 degrees.
 pub fn upset_s(errors: &ErrorRecord, attitudes: &[(f64, Attitude)], air: Span) -> Option<f64> {
     let inside = || attitudes.iter().filter(|(t_s, _)| air.contains(*t_s));
     let flips = inside().filter(|(_, attitude)| attitude.commanded_tilt_deg() > TILT_DEG);
@@ -112,7 +113,7 @@ mod tests {
             ((30.1, 40.0), 30.0, UpsetAlarm::After),
             ((31.0, 40.0), 30.0, UpsetAlarm::After),
             ((31.1, 40.0), 30.0, UpsetAlarm::Never),
-            // Raised before take-off.
+            // The alarm was raised before take-off.
             ((1.0, 40.0), 30.0, before(25.0)),
             ((1.0, 4.0), 8.0, UpsetAlarm::Never),
         ] {
@@ -127,7 +128,7 @@ mod tests {
 
     #[test]
     fn the_attitude_is_lost_by_its_error_or_by_an_uncommanded_tilt() {
-        // At 10 Hz; a roll from 40 s on, for a fifth of a second or permanently.
+        // A flight at 10 Hz that rolls from 40 s on, for a fifth of a second or until its end.
         let upset = |roll_deg: f64, roll_des_deg: f64, until_s: f64| {
             let attitudes: Vec<(f64, Attitude)> = (0..600)
                 .map(|i| {
@@ -152,10 +153,11 @@ mod tests {
         assert_eq!(upset(61.0, 0.0, 40.2), Some(40.0));
         assert_eq!(upset(61.0, 51.0, 60.0), None);
         assert_eq!(upset(59.0, 0.0, 40.2), None);
-        // 40 degrees for a share x of the second result in 40 sqrt(x): over 30 from x = 0.5625 on.
+        // An error of 40 degrees during a share x of the second gives a root mean square of 40 sqrt(x), which is over
+        // 30 from x = 0.5625 on.
         assert_eq!(upset(40.0, 0.0, 60.0), Some(40.5));
         assert_eq!(upset(29.0, 0.0, 60.0), None);
-        // An intentional flip.
+        // A flip is commanded from 40 s to 42 s.
         assert_eq!(upset(100.0, 61.0, 42.0), None);
     }
 }

@@ -22,23 +22,24 @@ pub(crate) struct Warnings {
     pub(crate) hours: f64,
     /// The number of episodes, that is, periods of critical error.
     pub(crate) episodes: usize,
-    /// The number of episodes at whose start a warning was on that began earlier.
+    /// The number of episodes with a warning that began earlier and was still on at their start.
     pub(crate) announced: usize,
     /// The median lead time of announced episodes, in seconds.
     pub(crate) lead_s_median: Option<f64>,
     /// The number of groups of episodes that follow each other within 5 s.
     pub(crate) groups: usize,
-    /// The number of groups whose first episode was announced: a warning that stays on would announce all others.
+    /// The number of groups whose first episode was announced. The other episodes of a group do not count, because a
+    /// warning that stays on would announce them all.
     pub(crate) groups_announced: usize,
     /// The median lead time of announced groups, in seconds.
     pub(crate) group_lead_s_median: Option<f64>,
     /// The number of episodes that were not announced, but during which a warning began.
     pub(crate) answered: usize,
-    /// The median time from the start of such an episode to that warning, in seconds.
+    /// The median time from the start of an answered episode to the warning, in seconds.
     pub(crate) answer_s_median: Option<f64>,
     /// The number of periods of WARN or FAIL.
     pub(crate) warnings: usize,
-    /// The number of warnings without an episode.
+    /// The number of false warnings, which no episode followed.
     pub(crate) false_warnings: usize,
     /// The share of the time during which a warning was on.
     pub(crate) share_of_time_on: Option<f64>,

@@ -79,9 +79,11 @@ fn motor(number: u16, output: String, source: &str) -> Motor {
     }
 }
 
-/// Motors of a tricopter: 1, 2 and 4. Number 7 is the servo that tilts the rear motor.
+/// The number of motors of a tricopter, which are the motors 1, 2 and 4.
 const TRI: u16 = 3;
+/// The motor number of the rear motor of a tricopter.
 const REAR_OF_TRI: u16 = 4;
+/// The motor number of the servo that tilts the rear motor of a tricopter.
 const SERVO_OF_TRI: u16 = 7;
 
 /// The maximum number of changes of the armed state, and of the in-air state, that are kept if they are derived from
@@ -99,7 +101,7 @@ pub(crate) fn air_from_commands(
     };
     let first_s = flight.commands.t_s().first().copied().unwrap_or_default();
     let running = |row: &[f64], _| row.iter().any(|&raw| raw > range.low + 1.0);
-    // Motors whose commands are unknown may be running, so they do not end a flight.
+    // A motor whose command is unknown may be running, so it does not end a flight.
     let flying = |row: &[f64], before: bool| {
         let known: Vec<f64> = row.iter().filter_map(|&raw| flight.command(raw)).collect();
         known.iter().sum::<f64>() > 0.2 * known.len() as f64 || before && known.len() < row.len()
@@ -259,8 +261,8 @@ pub(crate) fn effective_range(parameters: &Parameters) -> Range {
     }
 }
 
-/// The share of commands that may be above an upper limit that is in force, and the distance above it from which they
-/// count, as a fraction of the range. Single damaged samples are thus ignored.
+/// An upper limit is in force if at most the first number, a share of the commands, exceed it by more than the second
+/// number, a fraction of the range. Single damaged samples are thus ignored.
 const ABOVE: (f64, f64) = (1e-4, 0.006);
 
 /// The effective range of a flight. Before firmware 3.4 a limit may be set without being in force; the commands then

@@ -1,19 +1,20 @@
 //! The clock of a log: decides which timestamps to accept, and detects reboots of the autopilot.
 
-/// Steps from one message to the next that are always accepted, in seconds. The limit for steps back is larger than for
-/// steps forward, because the previous message may be the damaged one.
+/// The largest step back from one message to the next that is always accepted, in seconds. It is larger than
+/// [`FORWARD_S`], because the previous message may be the damaged one.
 const BACK_S: f64 = -2.5;
+/// The largest step forward from one message to the next that is always accepted, in seconds.
 const FORWARD_S: f64 = 2.0;
-/// The longest step from one message to the next that is accepted in slow logs.
+/// The longest step from one message to the next that is accepted in slow logs, in seconds.
 const SLOWEST_S: f64 = 60.0;
 /// A clock that goes back by more than this, in seconds, was restarted.
 const BOOT_STEP_S: f64 = -10.0;
-/// The longest pause of a log, in seconds. A time that is further ahead is damage, however many messages have it.
+/// The longest pause of a log, in seconds. A time further ahead is damaged, however many messages contain it.
 const LONGEST_PAUSE_S: f64 = 7.0 * 86_400.0;
 /// The latest plausible time of a clock, in seconds: about three times the time since 1970.
 const LATEST_S: f64 = 5e9;
 
-/// The number of boots that are kept of a log.
+/// The maximum number of boots of a log that are recorded.
 const MOST_BOOTS: usize = 1000;
 
 /// The treatment of a message, by its timestamp.
@@ -23,7 +24,7 @@ pub(crate) enum TimestampDecision {
     At(f64),
     /// The time of the message jumps: hold it until the next message confirms or refutes it.
     Wait,
-    /// The held message was right: accept it at the first time, and this one at the second.
+    /// The held message was right: accept it at the first time, and the current one at the second time.
     Confirmed(f64, f64),
     /// The held message was wrong: drop it, and accept this one.
     Refuted(f64),
@@ -161,7 +162,7 @@ pub(crate) fn seconds_of(micros: u32, last_s: Option<f64>) -> f64 {
     t_s + rounds * ROUND_S
 }
 
-/// The latest time of a log whose messages may be late, but not far ahead of all others.
+/// The latest time of a log whose messages may be late, but not far ahead of all others, in seconds.
 #[derive(Debug)]
 pub(crate) struct Latest {
     latest_s: Option<f64>,

@@ -1,4 +1,4 @@
-//! Errors of reading a log.
+//! Errors while reading a log.
 
 use std::io::ErrorKind;
 

@@ -43,7 +43,8 @@ pub struct Intervals {
 }
 
 impl Intervals {
-    /// Whether `t_s` is in one of the intervals (including their start, not their end).
+    /// Whether `t_s` is in one of the intervals. The start of an interval is included; the end is included only if the
+    /// log ends there.
     ///
     /// # Example
     /// ```
@@ -149,7 +150,7 @@ impl Intervals {
         }
     }
 
-    /// The same, marked as not reported by the autopilot.
+    /// These intervals, marked as not reported by the autopilot.
     pub(crate) fn assumed(self) -> Self {
         Self {
             is_assumed: true,
@@ -158,8 +159,8 @@ impl Intervals {
     }
 }
 
-/// The changes of the conjunction of two states, from the changes of each; the first value of each also applies to the
-/// time before it.
+/// Combines the changes of two states into the changes of a state that is true while both are. The first value of each
+/// also applies to the time before it.
 pub(crate) fn both_hold(a: &[(f64, bool)], b: &[(f64, bool)]) -> Vec<(f64, bool)> {
     let mut times: Vec<f64> = a.iter().chain(b).map(|(t_s, _)| *t_s).collect();
     times.sort_by(f64::total_cmp);

@@ -4,9 +4,9 @@
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct FileKind {
-    /// What the file is, such as `a PDF document`.
+    /// The kind in words, such as `a PDF document`.
     pub name: &'static str,
-    /// What to do, if that does not depend on the expected kind.
+    /// Advice on what to do, if it does not depend on the expected kind.
     pub help: Option<&'static str>,
 }
 

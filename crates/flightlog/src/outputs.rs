@@ -36,18 +36,19 @@ impl Bounds {
     }
 }
 
-/// The number of outputs that may be motors if nothing else names them. A motor has at least this standard deviation,
-/// in us, and this correlation with the mean of the first four outputs.
+/// The number of outputs that may be motors if nothing else names them.
 const MOST_LIKE: usize = 8;
+/// The minimum standard deviation of an output that may be a motor, in us.
 const LEAST_MOVE_US: f64 = 20.0;
+/// The minimum correlation of an output that may be a motor with the mean of the first four outputs.
 const TOGETHER: f64 = 0.6;
 
 /// Rows of pulse widths, with one column for each output.
 #[derive(Debug, Default)]
 pub(crate) struct Outputs {
     t_s: Vec<f64>,
-    /// One column for each output, at the index of its number minus 1; it is shorter than `t_s` if the output was not
-    /// logged since, and empty if all its values were 0.
+    /// One column for each output, at the index of its number minus 1. A column is shorter than `t_s` if the last rows
+    /// do not contain the output, and empty if all its values were 0.
     columns: Vec<Vec<u16>>,
     set_back: BackstepDetector,
 }
@@ -110,8 +111,8 @@ impl Outputs {
         restarts_s
     }
 
-    /// The number of motors, for logs in which nothing else determines it: 8, 6 or 4, the largest of these counts for
-    /// which all outputs up to it move together; `None` if fewer than 4 do.
+    /// Estimates the number of motors, for logs in which nothing else determines it: the largest of 8, 6 and 4 for
+    /// which that many of the first outputs move together; `None` if the first 4 do not.
     pub(crate) fn like_motors(&self) -> Option<u16> {
         let row = |row: usize| -> [f64; MOST_LIKE] {
             std::array::from_fn(|output| {

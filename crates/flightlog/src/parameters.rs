@@ -28,7 +28,7 @@ impl Parameters {
         }
     }
 
-    /// Sets a parameter, replacing an earlier value.
+    /// Replaces the value of a parameter, if the parameter is known.
     pub(crate) fn set(&mut self, name: &str, value: f64) {
         if let Some(known) = self.values.get_mut(name) {
             *known = value;
@@ -39,13 +39,13 @@ impl Parameters {
         self.values.get(name).copied()
     }
 
-    /// The number of values beyond these limits, which were not kept.
+    /// The number of values that were not kept, because there were too many names or a name was too long.
     pub(crate) fn left_out(&self) -> u64 {
         self.left_out
     }
 
     /// The known parameters that an assessment depends on: range and limits of the motors, frame, gains of the control
-    /// loops, and the selection of what is logged. `source` is where they come from.
+    /// loops, and the selection of what is logged. `source` is the message that contains them.
     pub(crate) fn of_motors(&self, source: &str) -> Vec<Parameter> {
         let throttle = format!("RC{}", self.get("RCMAP_THROTTLE").unwrap_or(3.0));
         let kept = self

@@ -39,8 +39,9 @@ impl PulseRangeError {
 
 /// The source of a range that the user gave.
 const GIVEN: &str = "given by the user";
-/// The share of commands that may be damaged, and the tolerance above the range, in us.
+/// The share of commands that may contradict the given range, because they are damaged.
 const DAMAGED: f64 = 1e-4;
+/// A command contradicts the given range only if it exceeds the range by more than this, in us.
 const ROUNDING_US: f64 = 5.0;
 
 impl PulseRange {

@@ -68,7 +68,7 @@ pub(crate) fn rotor_count(parameters: &Parameters) -> Option<u16> {
     (1.0..=12.0).contains(&count).then_some(count as u16)
 }
 
-/// Replaces number of motors and type according to CA_ROTOR_COUNT, if it contradicts them.
+/// Replaces the number of motors and the type of a vehicle if CA_ROTOR_COUNT contradicts them.
 pub(crate) fn count_rotors(vehicle: &mut Vehicle, parameters: &Parameters) {
     let Some(count) = rotor_count(parameters) else {
         return;
@@ -381,7 +381,7 @@ mod tests {
             found.map(|range| (range.low, range.high, range.unit))
         };
         assert_eq!(of(&dshot, (110.0, 1999.0)), Some((110.0, 1999.0, "raw")));
-        // Pulses of another bank, judging by the values.
+        // The values are not those of DShot, so the commands are pulses of another bank.
         assert_eq!(of(&dshot, (900.0, 1800.0)), Some((1075.0, 1950.0, "us")));
         // Without the minimum, or if the throttle works in both directions, there is no range.
         assert_eq!(of(&dshot[..1], (110.0, 1999.0)), None);

@@ -22,14 +22,14 @@ pub struct Report {
     pub truncated: bool,
     /// The first reason why bytes were skipped or a message was rejected.
     pub reason: Option<String>,
-    /// The data beyond the limits of what is kept.
+    /// The amounts of data that were left out because a limit was reached.
     pub left_out: LeftOutCounts,
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) stored: StoredCounts,
 }
 
-/// Counts of the data beyond the limits of what is kept. No real flight reaches a limit; damaged and malicious logs
-/// may.
+/// Amounts of data that were left out because a limit was reached. No real flight reaches a limit; damaged and
+/// malicious logs may.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -41,11 +41,11 @@ pub struct LeftOutCounts {
     pub modes: u64,
     /// Values of parameters after the first 16,384 names, and those with names longer than 64 bytes.
     pub parameters: u64,
-    /// Changes of armed and in the air after the first 10,000 of each, if they are derived from the commands. The time
-    /// after them does not count as in the air.
+    /// Changes of the armed state and of the in-air state after the first 10,000 of each, if they are derived from the
+    /// commands. The time after them does not count as in the air.
     pub changes: u64,
-    /// Messages after the flight has reached a limit: 67,108,864 numbers, 10,000 events of arming and flying, or 1,000
-    /// boots. The flight ends there.
+    /// Messages after the flight has reached a limit: 67,108,864 numbers, 10,000 changes of the armed or in-air state,
+    /// or 1,000 boots. The flight ends there.
     pub messages: u64,
 }
 
@@ -75,24 +75,25 @@ impl fmt::Display for LeftOutCounts {
     }
 }
 
-/// The number of texts that are kept.
+/// The maximum number of texts that are kept.
 const MOST_TEXTS: usize = 10_000;
-/// The number of flight mode changes that are kept.
+/// The maximum number of flight mode changes that are kept.
 const MOST_MODES: usize = 10_000;
-/// The number of values that are kept in all rows, including their times: about three hours of commands and attitude at
-/// 400 Hz.
+/// The maximum number of values that are kept in all rows, including their times: about three hours of commands and
+/// attitude at 400 Hz.
 const MOST_NUMBERS: u64 = 1 << 26;
-/// The number of events of arming and flying that are kept.
+/// The maximum number of changes of the armed or in-air state that are kept.
 const MOST_CHANGES: u64 = 10_000;
 
-/// The amounts that are kept so far, for limits that rows and changes share.
+/// The amounts of data that are kept so far. All rows and all changes count together.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct StoredCounts {
     numbers: u64,
     changes: u64,
 }
 
-/// Always equal: the kept amounts depend on the options, but reports must compare equal for any options.
+/// Instances are always equal: the amounts depend on the options for reading, but reports must be equal for any
+/// options.
 impl PartialEq for StoredCounts {
     fn eq(&self, _: &StoredCounts) -> bool {
         true
@@ -123,12 +124,12 @@ impl Report {
         }
     }
 
-    /// Counts a change of armed or in the air.
+    /// Counts a change of the armed or in-air state.
     pub(crate) fn change(&mut self) {
         self.stored.changes += 1;
     }
 
-    /// Appends a repeatedly reported state if it changes.
+    /// Appends a state that is reported repeatedly to `states` if it changed.
     pub(crate) fn state(&mut self, states: &mut Vec<(f64, bool)>, t_s: f64, state: Option<bool>) {
         let last = states.last().map(|(_, last)| *last);
         if let Some(state) = state.filter(|state| last != Some(*state)) {
@@ -137,7 +138,8 @@ impl Report {
         }
     }
 
-    /// Counts a message as omitted if the flight has reached a limit, of boots or otherwise; returns whether it has.
+    /// Returns whether the flight has reached a limit: of numbers, of changes or, if `of_boots`, of boots. If so, the
+    /// current message counts as left out.
     pub(crate) fn leaves_out(&mut self, of_boots: bool) -> bool {
         let StoredCounts { numbers, changes } = self.stored;
         let is_full = of_boots || numbers >= MOST_NUMBERS || changes >= MOST_CHANGES;

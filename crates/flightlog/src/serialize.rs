@@ -16,7 +16,7 @@ macro_rules! by_name {
 
 by_name!(Format, VehicleKind);
 
-/// `{ "t_s": [..], "raw": [[..], ..] }`, with one row for each sample; unknown values are not numbers.
+/// `{ "t_s": [..], "raw": [[..], ..] }`, with one row for each sample; unknown values are NaN.
 impl Serialize for Commands {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let rows: Vec<&[f64]> = self.rows().map(|(_, row)| row).collect();

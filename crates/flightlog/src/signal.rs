@@ -38,8 +38,8 @@ impl Series {
         self.t_s.iter_mut().for_each(|t_s| *t_s += by_s);
     }
 
-    /// Adds one row; `values` are in the order of the labels. Returns `true` if a row was dropped, this one or the
-    /// last: see [`Order`].
+    /// Adds one row; `values` are in the order of the labels. Returns `true` if a row was dropped, either this one or
+    /// the previous one: see [`Order`].
     pub(crate) fn push(&mut self, t_s: f64, values: impl IntoIterator<Item = f64>) -> bool {
         let order = Order::of(&self.t_s, t_s);
         match order {
@@ -180,7 +180,7 @@ pub(crate) enum Order {
     Last,
     /// The row is later than all rows except the last one, which was too far ahead and is dropped.
     Replaces,
-    /// The time of the row goes back even then, so the row itself is dropped.
+    /// The time of the row is before that of the last two rows, so the row itself is dropped.
     Back,
 }
 
@@ -194,9 +194,10 @@ impl Order {
     }
 }
 
-/// A clock that goes back by more than this for two rows or more, in seconds, was set back or restarted.
+/// A clock that goes back by more than this, in seconds, and stays behind for at least two rows, was set back or
+/// restarted.
 pub(crate) const SET_BACK_S: f64 = 0.2;
-/// The number of times at which a clock was set back that are kept of a log.
+/// The maximum number of entries in [`SetBack::at_s`].
 const MOST_SET_BACK: usize = 1000;
 
 /// Detects a clock that is set back. The rows that are dropped because of it leave no gap in the times of the other

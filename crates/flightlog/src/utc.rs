@@ -1,6 +1,6 @@
 //! Converts GPS time to UTC.
 
-/// GPS time starts on 6 January 1980, in seconds since 1970.
+/// The start of GPS time, 6 January 1980, in seconds since 1970.
 const GPS_EPOCH_S: f64 = 315_964_800.0;
 /// The UTC times, in seconds, from which GPS is ahead of UTC by this number of leap seconds (IERS Bulletin C).
 const LEAPS: &[(f64, f64)] = &[

@@ -1,4 +1,5 @@
-//! Rule blocks and settings of single outputs. A rule set has each of these once for all, or separately for each.
+//! Rule blocks, and settings of single outputs. In a rule set, such a setting applies to all blocks or outputs, or each
+//! has its own.
 
 use fuzzy::model::{Activation, Aggregation, Block, Model, Operators, Rule};
 
@@ -42,8 +43,8 @@ pub(crate) fn aggregate(model: &mut Model, found: &[Option<Aggregation>]) {
     }
 }
 
-/// Reports a loss if the aggregation of an output with computed values joins rules, because a rule set weights each rule
-/// separately.
+/// Reports a loss if several rules conclude the same term of an output with computed values and the aggregation of the
+/// file combines these rules. In a rule set, each rule has its own weight.
 pub(crate) fn joined(draft: &mut ModelDraft<'_>, output: &str, part: &str, help: &str) {
     let rules = draft.model.rules.iter();
     let consequents = rules.flat_map(|rule| &rule.rule.consequents);

@@ -1,4 +1,4 @@
-//! Conditions without NOT before brackets, which only YAML supports.
+//! Rewrites conditions without NOT before brackets, because only YAML supports this use of NOT.
 
 use fuzzy::{
     model::{Conjunction, Disjunction, Operators},

@@ -4,8 +4,8 @@ use fuzzy::model::{Formula, MembershipFunction};
 
 use crate::{model_draft::ModelDraft, words::is_name};
 
-/// Reads a term that is given by a formula, from words that are parts of the text. `own` is the variable that FLL calls
-/// `x`, if the formula is a fuzzy set.
+/// Reads a term that is given by a formula; `words` are slices of the text of `draft`. If the formula is a fuzzy set,
+/// `own` is the variable that FLL calls `x`.
 pub(crate) fn read(
     draft: &mut ModelDraft<'_>,
     words: &[&str],

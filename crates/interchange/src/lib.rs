@@ -148,11 +148,11 @@ pub fn read_block(text: &str, name: &str, losses: Losses) -> Result<Document, Fi
     Ok(crisp::read(document, text))
 }
 
-/// Reads a rule set in any format: one of these, or YAML.
+/// Reads a rule set in any [`Format`] or in YAML.
 ///
 /// # Errors
 ///
-/// As [`read`] without losses, and as [`fuzzy::yaml::parse`]; all errors of the model.
+/// The errors of [`read`] with [`Losses::Refuse`], those of [`fuzzy::yaml::parse`], and those of the model.
 pub fn document(text: &str) -> Result<Document, Findings> {
     let Some(format) = Format::of(text) else {
         return fuzzy::yaml::parse(text);

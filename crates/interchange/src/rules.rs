@@ -197,7 +197,8 @@ impl<'r> Reader<'r, '_, '_> {
         }))
     }
 
-    /// Reads `variable is hedge* term`. A hedge without a term after it is a term, except `any`, which needs none.
+    /// Reads `variable is hedge* term`. A hedge word without a term after it is the name of a term; only `any` needs no
+    /// term.
     fn proposition(&mut self, what: &str) -> Option<(Name, Vec<Hedge>, Option<Name>)> {
         let variable = self.name(what)?;
         self.expect("is")?;

@@ -124,7 +124,7 @@ pub(crate) const AGGREGATIONS: &Words<Aggregation> = &[
     ),
 ];
 
-/// FCL's `COGS` and fuzzylite's `WeightedAverage` apply to singletons and constants.
+/// The words for defuzzifiers. FCL's `COGS` and fuzzylite's `WeightedAverage` apply to singletons and constants.
 pub(crate) const DEFUZZIFIERS: &Words<Defuzzifier> = &[
     (
         Defuzzifier::Centroid,

@@ -101,12 +101,12 @@ impl Random {
     }
 }
 
-/// A text between quotes of YAML.
+/// A text in YAML quotes.
 fn yaml(text: &str) -> String {
     format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
 }
 
-/// A name between quotes of rules and formulas.
+/// A name in the quotes of rules and formulas.
 fn quoted(name: &str) -> String {
     format!("'{}'", name.replace('\\', "\\\\").replace('\'', "\\'"))
 }

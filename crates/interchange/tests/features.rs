@@ -229,7 +229,8 @@ fn rule_set(place: &str, text: &str) -> Model {
         .unwrap_or_else(|findings| panic!("{text}: {findings}"))
 }
 
-/// `carried` if both rule sets give the same values, `refused` if the format cannot represent it.
+/// Returns `carried` if the rule set that is read back gives the same values, `refused` if the format cannot represent
+/// the model.
 fn measured(model: &Model, format: Format) -> &'static str {
     let Ok(written) = flagred_interchange::write(model, format, Losses::Refuse) else {
         return "refused";

@@ -1,5 +1,5 @@
-//! Models of other programs give the values that those programs compute. They are not shipped: the tests search the
-//! folder `data/models` of FLAGRED_SHARED.
+//! Models of other programs give the values that those programs compute. The models are not shipped: the tests search
+//! the folder `data/models` of FLAGRED_SHARED.
 
 #![allow(
     clippy::expect_used,
@@ -156,8 +156,8 @@ fn as_fuzzylite(name: &str, model: &mut Model) {
     }
 }
 
-/// The FIS and FCL files that fuzzylite writes for its models. Its FIS lacks content of these models: the inputs that
-/// rules take from outputs, the kind of a hybrid system, and hedges that Octave reads as cubes.
+/// Compares the FIS and FCL files that fuzzylite writes for its own models. Its FIS files lack some content of these
+/// models: inputs that rules take from outputs, the kind of a hybrid system, and hedges that Octave reads as cubes.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
 fn copies_of_fuzzylites_models_have_the_same_values() {
@@ -209,7 +209,8 @@ fn fis_models_equal_fuzzylite() {
     assert_eq!(compare(&files, 1e-9, as_fuzzylite), refused);
 }
 
-/// The degrees of each term of the first input, in hundredths, over inputs in hundredths; and the values of the output.
+/// Compares with tables of jFuzzyLogic. A row contains the inputs, then the degrees of the first input's terms, the
+/// value of the output, or both.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
 fn fcl_models_equal_jfuzzylogic() {
@@ -228,7 +229,7 @@ fn fcl_models_equal_jfuzzylogic() {
         };
         let model = document.model;
         let file = name_of(&file);
-        // The values are in hundredths and truncated, or unchanged.
+        // Tables with a header contain values in hundredths, truncated; the others contain unscaled values.
         let is_cut = !table.starts_with(|c: char| c.is_ascii_digit());
         let unit = if is_cut { 0.01 } else { 1.0 };
         let memberships = table.starts_with("inVar");
@@ -251,7 +252,8 @@ fn fcl_models_equal_jfuzzylogic() {
                 compared += 1;
             }
             if let (Some(engine), [expected]) = (&engine, values) {
-                // jFuzzyLogic keeps the previous value if no rule fires: 0 in the first row.
+                // If no rule fires, jFuzzyLogic keeps the previous value, or 0 in the first row; such values are not
+                // compared.
                 let found = engine.evaluate(inputs).unwrap()[0].value();
                 let tolerance = if is_cut { 0.011 } else { 1e-3 };
                 if let Some(found) = found {
@@ -308,7 +310,8 @@ fn models_are_written_back_and_read_again_as_they_were() {
             equal += 1;
             continue;
         }
-        // FCL has points for triangles, FIS trapezoids for shoulders.
+        // FCL replaces triangles by points, and FIS replaces shoulders by trapezoids, so the models differ although
+        // their values are equal.
         assert!(
             format == Format::Fcl || name == "fis/mamdani_AllTerms.fis",
             "{name}"

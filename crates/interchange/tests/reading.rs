@@ -352,7 +352,7 @@ fn one_function_block_of_several_is_read_by_its_name() {
     assert_eq!(findings.0[0].help.as_deref(), Some("did you mean `twice`?"));
 }
 
-/// A file that ends within a section lacks rules or terms: the rest would be another rule set.
+/// A file that ends within a section lacks rules or terms; the rest by itself would be a different rule set.
 #[test]
 fn an_fcl_that_is_cut_off_is_refused() {
     let lines: Vec<&str> = FCL.lines().collect();
@@ -582,7 +582,7 @@ fn only_an_outer_side_of_a_shape_may_be_infinite() {
     let fis = |shape: &str| codes(&FIS.replace("'trapmf',[-1 0 1 3]", shape), Format::Fis);
     assert_eq!(fis("'trapmf',[-Inf -Inf 1 3]"), (true, vec![]));
     assert_eq!(fis("'trapmf',[-1 0 1 NaN]"), (false, vec!["not-finite"]));
-    // An invalid shape is reported when the rule set is used.
+    // Other invalid numbers are reported by the reader or, at the latest, when the rule set is used.
     for (text, format) in [
         (FLL.replace("Discrete 5 0", "Discrete nan 0"), Format::Fll),
         (FLL.replace("with 0.5", "with nan"), Format::Fll),

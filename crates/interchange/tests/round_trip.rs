@@ -157,7 +157,7 @@ fn steps_are_exported_as_rectangles_and_read_back_as_steps() {
             limits.collect::<Vec<_>>(),
             [Some(vec![36.0, 43.0]), Some(vec![0.0])]
         );
-        // Rectangles of another program share their limits.
+        // In files of other programs, neighbouring rectangles share a limit.
         let shared = written.text.replace("35.99999999999999", "36");
         let again = flagred_interchange::read(&shared, format, Losses::Refuse).unwrap();
         assert_eq!(again.model.inputs[0].step_limits(), None, "{shared}");

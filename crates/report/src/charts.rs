@@ -26,7 +26,7 @@ pub(crate) const SIGNALS: [&str; 6] = [
     "battery_v",
     "battery_remaining_pct",
 ];
-/// The signals of which the track is drawn.
+/// The signals from which the track is drawn.
 pub(crate) const POSITIONS: [&str; 4] = ["latitude_deg", "longitude_deg", "north_m", "east_m"];
 
 /// The signals that are needed to assess a log and to draw its report without the signals that readers may add.

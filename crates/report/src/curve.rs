@@ -8,7 +8,7 @@ use crate::clock::minutes;
 
 /// The number of spans of time in a thinned curve; each keeps its first, smallest, largest and last value.
 const SPANS: usize = 500;
-/// The same for a curve among many.
+/// The same number for a curve among many.
 pub(crate) const FEW_SPANS: usize = 120;
 
 /// A stretch shorter than this, in seconds, is drawn with a finer resolution of time.
@@ -32,7 +32,7 @@ const STEPS_S: [f64; 17] = [
 const MOST_TICKS: f64 = 6.0;
 
 impl Stretch {
-    /// The length in seconds, at least a millisecond.
+    /// The length in seconds; at least a millisecond.
     pub fn length_s(&self) -> f64 {
         (self.end_s - self.start_s).max(1e-3)
     }
@@ -79,7 +79,7 @@ pub(crate) fn path(
     thinned(points, stretch, gap_s, decimals, SPANS)
 }
 
-/// As [`path`], thinned to a number of spans.
+/// Like [`path`], but thinned to the given number of spans.
 pub(crate) fn thinned(
     points: impl Iterator<Item = (f64, f64)>,
     stretch: Stretch,

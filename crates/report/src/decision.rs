@@ -40,7 +40,8 @@ struct Slice {
     means: Vec<f64>,
 }
 
-/// The two inputs that affected the risk most over the flight, each varied with the others at their mean.
+/// Chooses the two inputs that affected the risk most over the flight. The effect of each is evaluated with the other
+/// inputs at their means.
 fn slice(estimator: &Estimator, steps: &[&Step]) -> Option<Slice> {
     let inputs = estimator.profile().inputs.len();
     if inputs < 2 || steps.is_empty() {

@@ -26,7 +26,7 @@ pub struct Document<'a> {
     /// The log that was read.
     log: Log<'a>,
     vehicle: Vehicle<'a>,
-    /// The amount of data read, and damage.
+    /// The amount of data that was read, and the damage that was found.
     read: &'a Report,
     profile: Profile<'a>,
     #[serde(flatten)]

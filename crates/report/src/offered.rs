@@ -16,11 +16,11 @@ use crate::{
 /// A signal of a log.
 #[derive(Debug, Serialize)]
 pub struct Offered<'a> {
-    /// Its name.
+    /// The name of the signal.
     pub name: &'a str,
-    /// The unit of its values; empty if it has none or it is unknown.
+    /// The unit of the values; empty if there is none or it is unknown.
     pub unit: &'a str,
-    /// The message and field that contain it.
+    /// The message and field of the log that contain the signal.
     pub source: &'a str,
 }
 
@@ -39,7 +39,7 @@ pub fn signals(flight: &Flight) -> Vec<Offered<'_>> {
     offered
 }
 
-/// The unit of a signal for people.
+/// The unit of a signal, as people write it.
 fn unit<'a>(signal: &Signal<'a>) -> &'a str {
     match signal.label.unit.as_str() {
         "1" => "",

@@ -53,7 +53,7 @@ pub fn comparison_fragment(
     shown(comparison_body(subjects, loaded, since_start))
 }
 
-/// The length of the longest of some flights, in seconds: a comparison shows the same length of all.
+/// The length of the longest of the flights, in seconds. A comparison shows a stretch of this length for each flight.
 pub fn longest_s(subjects: &[&Subject]) -> f64 {
     let lengths = subjects.iter().map(|subject| subject.stretch().length_s());
     lengths.fold(0.0, f64::max)

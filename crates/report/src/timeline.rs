@@ -6,16 +6,16 @@ use fuzzy::drawing::{EscapedText, Frame, Scale, number};
 
 use crate::curve::Stretch;
 
-/// The styles of curves over time. The including page sets the colours of lines, marks and alerts: `--c` of their
-/// classes.
+/// The styles of curves over time. The page that includes them sets the colours of the classes of lines, marks and
+/// alerts, as `--c`.
 pub(crate) const CSS: &str = include_str!("timeline.css");
 
-/// The data that all panels of one course of events share.
+/// The data that all panels over the same time share.
 #[derive(Debug, Clone)]
 pub(crate) struct Timeline {
     /// The time that is shown.
     pub(crate) stretch: Stretch,
-    /// The time at which its clock is 0:00, in seconds.
+    /// The time at which the labels show 0:00, in seconds.
     pub(crate) zero_s: f64,
     /// The phases behind the curves.
     pub(crate) phases: Vec<Phase>,
@@ -25,7 +25,7 @@ pub(crate) struct Timeline {
     pub(crate) events: Vec<(f64, String)>,
 }
 
-/// A phase of a course of events, shaded behind the curves.
+/// A phase, such as a flight mode, shaded behind the curves.
 #[derive(Debug, Clone)]
 pub(crate) struct Phase {
     /// The time of the phase.

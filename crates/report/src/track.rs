@@ -184,7 +184,7 @@ fn local(degrees: Vec<(f64, f64, f64)>) -> Vec<(f64, f64, f64)> {
     degrees.into_iter().map(metres).collect()
 }
 
-/// The largest of 1, 2 and 5 times a power of ten that is not longer.
+/// The largest of 1, 2 and 5 times a power of ten that is not larger than `longest`.
 fn round_length(longest: f64) -> f64 {
     let power = 10f64.powf(longest.log10().floor());
     let fits = [5.0, 2.0]
@@ -193,7 +193,7 @@ fn round_length(longest: f64) -> f64 {
     fits.unwrap_or(1.0) * power
 }
 
-/// Lines at each `step`.
+/// The grid of the map, with a line every `step` metres.
 fn grid(left: f64, top: f64, side: f64, step: f64, m: impl Fn(f64) -> String) -> String {
     let mut data = String::new();
     for i in 0..=(side / step) as usize {
@@ -205,7 +205,7 @@ fn grid(left: f64, top: f64, side: f64, step: f64, m: impl Fn(f64) -> String) ->
     format!(r#"<path class="grid" d="{data}"/>"#)
 }
 
-/// The track: a path for each stretch of one colour, on a wider one that separates it from the paper.
+/// The track: a path for each stretch of one colour, over a wider path that separates it from the background.
 fn lines(points: &[Point], place: impl Fn(&Point) -> String) -> String {
     let class = |point: &Point| {
         point

@@ -284,8 +284,8 @@ fn missing<'a>(flight: &Flight, signals: &'a [String]) -> &'a str {
         .map_or("", String::as_str)
 }
 
-/// The size of the damage at the end, in bytes, up to which a log was probably cut off inside a
-/// message when the power was lost.
+/// If at most this number of bytes is damaged, and only at the end, the log was probably cut off inside a message when
+/// the power was lost.
 const ONE_MESSAGE_BYTES: u64 = 256;
 
 /// Describes the damage of a log that could be read in part.

@@ -1,4 +1,4 @@
-//! Fuzzy c-means (Bezdek 1981): groups of rows, to each of which a row belongs by a degree.
+//! Fuzzy c-means (Bezdek 1981): finds clusters of rows; each row belongs to every cluster by a degree.
 
 use fastrand::Rng;
 
@@ -9,9 +9,9 @@ pub struct Settings {
     pub clusters: usize,
     /// The fuzzifier, above 1: larger values give softer clusters.
     pub fuzzifier: f64,
-    /// The maximum number of iterations per start.
+    /// The maximum number of iterations per start of the search.
     pub iterations: u32,
-    /// The number of starts, each from different rows; the best result is returned.
+    /// The number of starts of the search, each from different rows; the best result is returned.
     pub starts: u32,
     /// The random seed for choosing the rows from which the search starts.
     pub seed: u64,
@@ -74,7 +74,7 @@ const ENOUGH: f64 = 1e-9;
 /// first if their units differ.
 ///
 /// # Errors
-/// The settings or the rows cannot be used.
+/// If the settings or the rows cannot be used.
 ///
 /// ```
 /// use flagred_tuning::c_means::{Settings, c_means};

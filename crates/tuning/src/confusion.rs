@@ -2,13 +2,12 @@
 
 use crate::Data;
 
-/// The numbers of rows by their class and their predicted class, which is the class nearest to the
-/// prediction.
+/// The number of rows for each class and predicted class. The predicted class is the one nearest to the prediction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Confusion {
     /// The classes, ascending: the values of the output that occur in the rows.
     pub classes: Vec<f64>,
-    /// For each class, the number of its rows that were predicted as each class.
+    /// For each class, the number of rows of this class by their predicted class.
     pub rows: Vec<Vec<usize>>,
 }
 

@@ -14,17 +14,17 @@ use crate::{
     parameters::{UNBOUNDED, bounds},
 };
 
-/// The ridge, relative to the largest curvature. It keeps numbers that the rows do not determine at their current
-/// values.
+/// The ridge, relative to the largest curvature. If the rows do not determine a number, the ridge keeps its current
+/// value.
 const RIDGE: f64 = 1e-8;
 
-/// The largest ridge. It reduces the steps of numbers that the rows determine by about this share.
+/// The largest ridge. The steps of numbers that the rows do determine are reduced by about this share.
 const LARGEST_RIDGE: f64 = 1e-4;
 
 /// The number of rows whose firing strengths are in memory at a time.
 const ROWS: usize = 4096;
 
-/// Sets the numbers of the terms `fitted` of the only output to the minimum of the sum of squared errors, with
+/// Fits the numbers of the terms `fitted`, which belong to the only output: minimises the sum of squared errors, with
 /// constants within their [`bounds`].
 pub(crate) fn fit(
     model: &mut Model,
@@ -85,7 +85,7 @@ pub(crate) fn fit(
     }
     squares.fill_upper_triangle_with_lower_triangle();
     let variable = &output.variable;
-    // The limits of the steps.
+    // The minimum and maximum of each step.
     let limits = |beyond_range: bool| -> Vec<(f64, f64)> {
         let limits = consequents.iter().flat_map(|consequent| {
             let term = variable.terms.get(consequent.term);
@@ -122,7 +122,7 @@ pub(crate) fn fit(
         if let Some(term) = terms.get_mut(consequent.term) {
             let (low, high) = bounds(variable, term, beyond_range);
             consequent.move_by(&mut term.membership_function, &mut rest);
-            // Sums have rounding errors.
+            // Rounding errors may exceed the limits slightly.
             if let MembershipFunction::Constant { value } = &mut term.membership_function {
                 *value = value.clamp(low, high);
             }
@@ -134,8 +134,9 @@ pub(crate) fn fit(
     Ok(())
 }
 
-/// The best steps within limits, starting from the best steps without: each in turn is set to the minimum of the error
-/// while the others are fixed, until none changes. The error is convex, so this is its minimum.
+/// Returns the best steps within limits. It starts from `steps`, the best steps without limits, and sets one step at a
+/// time to the minimum of the error while the others are fixed, until none changes. The error is convex, so the result
+/// is its minimum.
 fn within(
     limits: &[(f64, f64)],
     mut steps: DVector<f64>,
@@ -200,8 +201,8 @@ fn ridged(mut squares: DMatrix<f64>, ridge: f64) -> DMatrix<f64> {
     squares
 }
 
-/// A model whose outputs are the firing strengths of the consequents, and the indices of their terms: the same rules,
-/// each with the constant 1 of a separate output.
+/// Returns a model whose outputs are the firing strengths of the consequents, and the indices of the terms of these
+/// consequents. It has the same rules, but each concludes the constant 1 of a separate output.
 fn probe(model: &Model) -> Option<(Model, Vec<usize>)> {
     let output = model.outputs.first()?;
     let mut probe = model.clone();

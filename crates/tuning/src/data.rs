@@ -23,7 +23,8 @@ pub struct Data {
 }
 
 impl Data {
-    /// The largest absolute value and weight of a row. Squares of larger numbers, and their products, would overflow.
+    /// The largest absolute value of a number in a row, and the largest weight. Squares of larger numbers, and their
+    /// products, would overflow.
     pub const LARGEST: f64 = *WEIGHTS.end();
 
     /// The largest distance of a target of [`Loss::Squared`] from the output's range, in widths of the range. Beyond
@@ -65,7 +66,8 @@ impl Data {
         self.weights.get(row).copied().unwrap_or(1.0)
     }
 
-    /// The rows with a weight above 0. Others must not take up folds of cross-validation.
+    /// The rows with a weight above 0. Without this selection, folds of cross-validation could consist of rows without
+    /// weight.
     pub(crate) fn weighted(&self) -> Cow<'_, Data> {
         match self.weights.contains(&0.0) {
             true => Cow::Owned(self.filtered(|row| self.weight(row) > 0.0)),

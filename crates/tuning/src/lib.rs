@@ -3,7 +3,8 @@
 //! Tuning does not change the rules, and keeps the properties that make them readable: the order of the terms of a
 //! variable, a minimum distance between their peaks, partitions whose degrees sum to 1, vertical edges, and terms that
 //! touch the end of a range. No width, slope or flank grows or shrinks by more than a factor of five. These properties
-//! are guaranteed by construction: the search changes free numbers, and any values of these result in such a model.
+//! are guaranteed by construction: the search changes free numbers, and any values of these numbers result in a model
+//! with these properties.
 //!
 //! [`tune`] minimises a [`Loss`] by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963). With squared errors the
 //! consequents of a Takagi-Sugeno output are computed by least squares at every step, as in ANFIS (Jang 1993).
@@ -150,7 +151,8 @@ pub fn tune(
     let mut is_stopped = false;
     let mut random = fastrand::Rng::with_seed(settings.seed);
     for start in 1..=settings.starts.max(1) {
-        // A change of 1 in a free number is a factor of e.
+        // A change of 1 in a free number is large: a factor of about e for a width or a distance, the width of the
+        // range for a constant.
         let mut jitter = || {
             if start == 1 {
                 0.0

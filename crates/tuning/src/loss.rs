@@ -41,7 +41,8 @@ pub(crate) fn slopes(loss: Loss, predictions: &[f64], truths: &[f64], data: &Dat
             }
         };
         slopes.loss += weight * value;
-        // An unknown prediction stays in the middle for small changes.
+        // An unknown prediction counts as the middle of the range and does not respond to small changes, so its slope
+        // is 0.
         slopes
             .first
             .push(if is_known { weight * first } else { 0.0 });
@@ -58,7 +59,8 @@ const SCALE: f64 = 0.02;
 /// The number of positions for which pairs are summed; the sums are interpolated linearly between them.
 const PLACES: usize = 512;
 
-/// The mean over pairs of a row with truth 1 and a row with truth 0.
+/// The loss of [`Loss::Ranking`]: the mean of a smooth loss over all pairs of a row with truth 1 and a row with truth
+/// 0.
 fn ranking(predictions: &[f64], truths: &[f64], data: &Data) -> Slopes {
     let between = |prediction: f64| {
         let known = if prediction.is_finite() {
@@ -93,8 +95,8 @@ fn ranking(predictions: &[f64], truths: &[f64], data: &Data) -> Slopes {
             ]
         })
         .collect();
-    // The sums over all partners of a row at a position: those with truth 0 (partners of truth 1) and those with truth
-    // 1.
+    // For a row at each position, the sums over all rows of the other truth: first for a row with truth 0, then for one
+    // with truth 1.
     let sums = [true, false].map(|is_zero| {
         let partners = &masses[usize::from(is_zero)];
         let sum_at = |place: usize| {

@@ -81,7 +81,8 @@ pub fn numbers(model: &Model) -> Vec<Number> {
     numbers
 }
 
-/// For each of the [`numbers`], the width of the range in which it is a position; infinite for other numbers.
+/// For each of the [`numbers`], the width of the variable's range if the number is a position in this range, otherwise
+/// infinity.
 pub(crate) fn widths(model: &Model) -> Vec<f64> {
     let mut widths = Vec::new();
     change(&mut model.clone(), &mut |number, width| {
@@ -91,8 +92,8 @@ pub(crate) fn widths(model: &Model) -> Vec<f64> {
     widths
 }
 
-/// The model with the numbers of another one. `None` if the other model has other numbers, because its terms, shapes or
-/// rules differ.
+/// The `model` with the numbers of `other`. `None` if `other` has different numbers, because its terms, shapes or rules
+/// differ.
 pub fn with_numbers_of(model: &Model, other: &Model) -> Option<Model> {
     let (own, others) = (numbers(model), numbers(other));
     let name = |number: &Number| (number.of.clone(), number.name.clone());
@@ -119,8 +120,8 @@ pub(crate) fn with(model: &Model, indices: &[usize], value: f64) -> Model {
     model
 }
 
-/// Returns the new value of a number. The second argument is the width of the range in which the number is a position,
-/// infinite for other numbers.
+/// Returns the new value of a number. The second argument is the width of the variable's range if the number is a
+/// position in this range, otherwise infinity.
 type Change<'a> = dyn FnMut(Number, f64) -> f64 + 'a;
 
 /// Sets each number of a model to the value that `value` returns for it.
@@ -200,14 +201,15 @@ fn shape(variable: &str, width: f64, term: &mut Term, value: &mut Change<'_>) {
     }
 }
 
-/// The two nearest numbers with `digits` significant digits on either side of `value`, or one if it has no more digits
-/// itself. A position in a range of a smaller width is rounded to the digits of the width. A position near 0 is not
-/// rounded more finely than its range requires: three digits are at most 0.05 % of the width.
+/// Returns the two nearest numbers with `digits` significant digits on either side of `value`, or `value` alone if it
+/// has no more digits. For a position, `width` is the width of its range: if that is smaller than the position, it
+/// determines the last digit. A position near 0 is not rounded more finely than its range requires: three digits are at
+/// most 0.05 % of the width.
 pub(crate) fn round(value: f64, digits: u32, width: f64) -> Vec<f64> {
     if value == 0.0 || !value.is_finite() {
         return vec![value];
     }
-    // The rounding error of a difference of equal numbers.
+    // Such a small position is the rounding error of a difference that should be 0.
     if width.is_finite() && value.abs() < 1e-9 * width {
         return vec![0.0];
     }

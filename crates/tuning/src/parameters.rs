@@ -16,8 +16,8 @@ pub(crate) struct Parameters {
     variables: Vec<(VariableIndex, FreeParameters)>,
     /// The indices of the rules whose weights may change.
     weights: Vec<usize>,
-    /// The terms that are fitted in closed form, all of the only output. With a chain of outputs the problem is not
-    /// linear.
+    /// The indices of the terms that are fitted in closed form. Only a model with one output has such terms: with a
+    /// chain of outputs, the problem is not linear.
     pub(crate) fitted: Vec<usize>,
     /// The index of the output whose values the rows have.
     pub(crate) target: usize,
@@ -288,7 +288,7 @@ fn is_linear(term: &Term) -> bool {
     )
 }
 
-/// The parameters of the membership functions of a variable that may change.
+/// The parameters of a variable's membership functions that may change.
 fn terms(
     variable: &Variable,
     settings: &Settings,
@@ -352,7 +352,7 @@ pub(crate) fn is_width(name: &str, role: Role) -> bool {
     role == Role::Positive || name.ends_with("slope")
 }
 
-/// The numbers of the consequents that may change, with the change per unit of its free number.
+/// The consequents that may change: the index of each term, with the scale of each of its numbers.
 fn consequents(
     model: &Model,
     output: &Output,

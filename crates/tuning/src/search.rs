@@ -14,7 +14,7 @@ use crate::{
 /// The step of a finite difference. All free numbers are of the order of 1.
 const DIFFERENCE: f64 = 1e-4;
 
-/// The longest step of a free number. All are of the order of 1.
+/// The longest step of a free number. All free numbers are of the order of 1.
 const LONGEST: f64 = 2.0;
 
 /// A step with a smaller relative gain counts as poor.
@@ -124,8 +124,8 @@ fn normal_equations(
     Ok((squares, products))
 }
 
-/// Removes numbers from the equations that are at a limit and would exceed it, so that the steps of the others do not
-/// depend on them.
+/// Removes from the equations the numbers that are at a limit and would exceed it, so that the steps of the other
+/// numbers do not depend on them.
 fn hold(limits: &[(f64, f64)], z: &[f64], squares: &mut DMatrix<f64>, products: &mut DVector<f64>) {
     let largest = squares.diagonal().max();
     for (i, ((low, high), z)) in limits.iter().zip(z).enumerate() {

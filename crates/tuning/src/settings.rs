@@ -139,7 +139,7 @@ pub enum TuneError {
         /// The maximum number of columns.
         most: usize,
     },
-    /// A value or a weight that cannot be used.
+    /// A value or a weight cannot be used.
     #[error("row {row}: {what}")]
     Row {
         /// The index of the row, from 0.

@@ -191,7 +191,7 @@ rules:
     }
 }
 
-/// The rare class is above the line.
+/// Rows with truth 0 or 1. The truth is 1 for the smaller part of the rows, those above a line.
 fn classes(rows: usize) -> Data {
     let mut random = fastrand::Rng::with_seed(5);
     let mut column = || (0..rows).map(|_| 10.0 * random.f64()).collect::<Vec<f64>>();
@@ -419,7 +419,7 @@ fn constants_are_optimal_within_the_range() {
         output: None,
     };
     for monotone in [Vec::new(), vec![rising]] {
-        // From inside, and from the upper end, where a constant can only decrease.
+        // The search begins inside the range, and at its upper end, where a constant can only decrease.
         for begun in [[3.0, 4.0], [10.0, 10.0]] {
             let settings = Settings {
                 only: only.clone(),

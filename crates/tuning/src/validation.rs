@@ -34,7 +34,7 @@ pub struct Validation {
 
 /// For each fold in turn, tunes on the other rows and predicts the fold. Rows of a group stay together.
 ///
-/// `watch` is called as by [`tune`], with the index of the fold; on `Break` there is no result.
+/// `watch` is called as in [`tune`], but also receives the index of the fold; on `Break` there is no result.
 ///
 /// # Errors
 /// As [`tune`].
@@ -78,17 +78,16 @@ pub fn cross_validate(
     }))
 }
 
-/// A point of a learning curve: the loss on unseen rows, for models tuned on a share of the other
-/// rows.
+/// A point of a learning curve: the loss on unseen rows, for models tuned on only a share of the other rows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurvePoint {
-    /// The share of the other rows, or of their groups, for tuning.
+    /// The share of the other rows, or of their groups, that is used for tuning.
     pub share: f64,
     /// The loss on unseen rows; see [`crate::Loss`].
     pub left_out: f64,
 }
 
-/// The number of parts of the known rows for a learning curve.
+/// The number of parts into which the known rows are divided for a learning curve.
 const EIGHTHS: usize = 8;
 
 /// Computes [`cross_validate`] with an eighth, a quarter and half of the known rows. The last point, for all of them,
@@ -126,7 +125,8 @@ pub fn learning_curve(
     Ok(Some(curve))
 }
 
-/// Predicts the rows of each fold by a model tuned on `eighths` eighths of the others; `None` if `watch` ended it.
+/// Predicts the rows of each fold by a model tuned on `eighths` eighths of the other rows; `None` if `watch` ended the
+/// search.
 fn left_out(
     model: &Model,
     data: &Data,

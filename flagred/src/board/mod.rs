@@ -230,7 +230,7 @@ impl Plan<'_> {
         })
     }
 
-    /// The cause of the risk; requires the outcomes at the same inputs.
+    /// The cause of the risk. `rules` must contain the outcomes at the same inputs.
     fn cause(
         &self,
         inputs: &[f64],
@@ -304,8 +304,8 @@ pub struct Monitor<'a> {
 }
 
 impl<'a> Monitor<'a> {
-    /// Creates a monitor of a new flight, with as many motors as the memory has room for. A profile that reads no
-    /// motors needs none.
+    /// Creates a monitor of a new flight. The number of motors is that of the memory. A profile that reads no motors
+    /// needs none.
     ///
     /// # Errors
     /// If the memory does not have the sizes that the plan requires, if motors are missing, or if the plan is damaged.

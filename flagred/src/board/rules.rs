@@ -112,7 +112,7 @@ pub struct RuleMemory<'m> {
     pub strongest: &'m mut [StrongestRule],
     /// One for each output.
     pub outcomes: &'m mut [Outcome],
-    /// One for each output.
+    /// The outcomes of a stage; as many as outputs.
     pub own: &'m mut [Outcome],
 }
 

@@ -45,7 +45,7 @@ pub struct Memory<'m> {
     pub motors: &'m mut [Motor],
 }
 
-/// Borrows the parts of a memory that has arrays or vectors with the names of the fields of [`Memory`].
+/// Borrows memory whose arrays or vectors have the same names as the fields of [`Memory`].
 macro_rules! lent {
     ($held:expr) => {
         Memory {

@@ -20,7 +20,7 @@ pub struct ChannelState {
     window: Window,
     /// Used instead of the window if the channel is exponential.
     exponential: Exponential,
-    /// The latest value; over motors, their mean.
+    /// The latest value; for a signal of motors, the mean over the motors.
     last: Option<f64>,
     bin: Bin,
     /// Whether all signals were known at the same time at least once, on the ground or in the air, in this flight or
@@ -338,7 +338,7 @@ impl Channel {
         }
     }
 
-    /// The value over all motors; NaN if it is unknown.
+    /// The moments of the values of the motors, or of the value into which they are combined; empty if a motor is unknown.
     fn over(&self, mut motors: impl Iterator<Item = f64> + Clone) -> Moments {
         if let Motors::One(motor) = self.motors {
             let one = motors.nth(motor as usize);
@@ -358,7 +358,7 @@ impl Channel {
         self.threshold(one.unwrap_or(f64::NAN))
     }
 
-    /// The value of a signal; NaN if it is unknown.
+    /// The moments of a single value; empty if the value is not finite.
     fn threshold(&self, value: f64) -> Moments {
         if value.is_finite() {
             Moments::of(self.counted(value), 1.0)

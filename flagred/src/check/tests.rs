@@ -197,7 +197,7 @@ fn an_input_that_raises_no_level_alone_is_reported_as_outvoted() {
     };
     let vote = "IF battery IS empty THEN risk IS very_high";
     let (reached, told) = found(vote, "{last: battery_remaining_pct}");
-    // By hand: 95 against 0.66 * 5, 0.33 * 25 and 0.66 * 5.
+    // By hand: the battery votes for 95 with weight 1, other inputs for 5, 25 and 5 with weights 0.66, 0.33 and 0.66.
     let expected = (95.0 + 14.85) / (1.0 + 1.65);
     assert!((reached.risk_pct - expected).abs() < 1e-9, "{reached:?}");
     assert_eq!(

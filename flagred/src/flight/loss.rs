@@ -3,9 +3,9 @@
 use super::Reason;
 use crate::monitor::Unknown;
 
-/// The largest share that may be lost for a verdict of GOOD, both of the time in the air without the command of a motor
-/// and of the samples that were ignored because of their times. A larger loss can hide a FAIL, however often the motor
-/// is known in between.
+/// The largest share of lost data with which a verdict can be GOOD. It applies to the time in the air without the command
+/// of a motor, and to the samples that were ignored because of their times. A larger loss can hide a FAIL, however often
+/// the motor is known in between.
 const LARGEST_SHARE: f64 = 1.0 / 16.0;
 
 /// The data that was lost in the air so far.
@@ -49,7 +49,8 @@ impl Losses {
         self.set_back_s.get_or_insert(at_s);
     }
 
-    /// Adds a sample that applies to the `held_s` seconds before `t_s`, with the reasons why risks are unknown there.
+    /// Adds a sample that represents the `held_s` seconds before `t_s`, with the reasons why risks are unknown in this
+    /// period.
     ///
     /// Known time is subtracted from the latest loss, so that a few damaged samples never add up to a long loss.
     pub(super) fn take_sample(

@@ -52,7 +52,7 @@ fn risk_just_after_take_off_and_just_before_landing_is_not_assessed() {
     let last = flown.steps.last().unwrap();
     assert!(!last.judged && last.estimate.unwrap().risk_pct > peak.value_pct);
     assert!(!flown.steps[0].judged && flown.steps[100].judged);
-    // The same end without a landing is judged.
+    // Without a landing, the same last seconds are judged.
     let cut = fly(&[(20.0, true, HOVER), (3.0, true, LIMIT)]);
     assert!(cut.summary.risk_max.unwrap().value_pct > 60.0);
     assert_eq!(cut.verdict, Verdict::Known(Level::Fail));
@@ -117,7 +117,8 @@ fn a_second_flight_starts_without_the_state_of_the_first() {
     assert_eq!(fly(30.0, HOVER).verdict, Verdict::Known(Level::Good));
 }
 
-/// The paper's inputs; the rules about the spread read a signal that is not a motor at its limit.
+/// The first input of the paper's rules is the margin of the motors, or another signal, whose low values are not a motor
+/// at its limit.
 #[test]
 fn a_motor_is_named_only_where_motors_near_a_limit_are_the_cause() {
     let paper = shipped::flagred_paper();

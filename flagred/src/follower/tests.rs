@@ -310,7 +310,7 @@ fn a_motor_is_reported_only_if_it_leaves_its_usual_share() {
 
 #[test]
 fn noise_is_information_and_changes_no_level() {
-    // The steps between times of 0.1 s are 0.1, so the noise is 0.1 / sqrt(2).
+    // The command changes by 0.1 from each bin (0.1 s) to the next, so the noise is 0.1 / sqrt(2).
     let shaken = |t_s: f64| {
         let even = ((t_s * 10.0 + 1e-6) as u32).is_multiple_of(2);
         [if even { 0.45 } else { 0.55 }; 4]

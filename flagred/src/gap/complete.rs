@@ -80,7 +80,7 @@ struct Search<'a> {
     rules: Vec<Antecedent>,
     and: Conjunction,
     coverage_below: f64,
-    /// The index of the interval of each of the first inputs.
+    /// For each of the first inputs, the index of its interval.
     cell: Vec<usize>,
     steps: usize,
 }

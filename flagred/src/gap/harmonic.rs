@@ -9,7 +9,7 @@ use super::field::Field;
 /// The iteration ends after a sweep that changes no value by more than this share of the span of the known values.
 const TOLERANCE: f64 = 1e-9;
 
-/// The maximum number of sweeps. Gaps are a few terms wide and converge long before.
+/// The maximum number of sweeps. Gaps are a few terms wide, so the iteration converges long before this limit.
 const MOST_SWEEPS: usize = 20_000;
 
 /// The over-relaxation factor.
@@ -46,7 +46,7 @@ pub(super) fn fill(field: &mut Field) {
             break;
         }
     }
-    // The iteration can pass its limit by a rounding error on either side.
+    // By a rounding error, the iteration can leave the range of the known values.
     for (knot, _) in gap {
         field.values[knot] = field.values[knot].clamp(low, high);
     }

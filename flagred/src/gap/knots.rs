@@ -9,7 +9,8 @@ use fuzzy::{
 
 use super::filled::read;
 
-/// The maximum number of knots; more are thinned, which bounds the cost of filling for any number of inputs.
+/// The maximum number of knots at the peaks and between them. Larger grids are thinned, which bounds the cost of filling for
+/// any number of inputs.
 const MOST_KNOTS: usize = 40_000;
 
 /// A grid over the inputs of a rule set, with a coordinate at the peak of every term and one halfway between each two
@@ -59,8 +60,7 @@ impl Knots {
         Some(Knots::over(axes, ranges.collect()))
     }
 
-    /// The same grid, extended to the ends of the inputs' ranges if they are missing and there is
-    /// room for them.
+    /// The same grid, extended to the ends of the inputs' ranges, unless this makes it larger than four times the maximum.
     pub(super) fn with_ends(&self, model: &Model) -> Knots {
         let axes = self.axes.iter().zip(&model.inputs).map(|(places, input)| {
             if places.len() == 1 {

@@ -95,7 +95,7 @@ mod tests {
                 assert_eq!(map.is_filled(cell), in_corner, "{point:?}");
                 assert_eq!(map.filled(cell).is_some(), in_corner);
             }
-            // 0.04 below the covered part, in shares of a range of 0.5.
+            // The cell is 0.04 below the covered part, which is 0.08 of the range of 0.5.
             let distance = map.filled(2 * 51 + 1).unwrap().distance;
             approx::assert_abs_diff_eq!(distance, 0.08, epsilon = 1e-12);
         }

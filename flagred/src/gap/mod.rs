@@ -40,9 +40,8 @@ pub use map::FilledMap;
 #[cfg(feature = "std")]
 pub use settings::{GapMethod, GapSettings};
 
-/// Whether a point with this coverage is a gap: whether the coverage is below `coverage_below`, with a tolerance of
-/// 1e-9 of it. Halfway between two peaks, where both terms should be at 0.5, rounding may leave one of them slightly
-/// below.
+/// Whether a point with this coverage is a gap: whether the coverage is below `coverage_below`, with a relative tolerance
+/// of 1e-9. Halfway between two peaks, the degrees of both terms should be 0.5, but rounding may leave one slightly below.
 ///
 /// # Example
 /// ```

@@ -32,7 +32,7 @@ pub(super) fn fill(field: &mut Field, range: (f64, f64)) {
             .iter()
             .filter_map(|(_, index)| known.get(*index).copied())
             .collect();
-        // Relative to the point itself, so that the constant is the value there.
+        // The centres are relative to the point, so that the constant of the spline is the value at the point.
         let centres: Vec<Vec<f64>> = neighbours
             .iter()
             .map(|n| {

@@ -113,7 +113,7 @@ fn risk_at(assessments: &[Update], t_s: f64) -> Result<f64, Unknown> {
     at.risk.map(|estimate| estimate.risk_pct)
 }
 
-/// `x / max(per, at_least)`, with an input that the rules do not have; unknown if that input is unknown.
+/// A ratio `x / max(per, at_least)` may divide by an input that the rules do not have. It is unknown if that input is unknown.
 #[test]
 fn a_ratio_divides_two_other_inputs() {
     let text = "flagred: 1
@@ -536,8 +536,8 @@ fn a_missing_signal_has_its_default_until_it_first_arrives() {
     let plan = estimator.plan().unwrap();
     let names = ["battery_v"];
     let known = Craft::new(2).with_signals(&names);
-    // Cases of a craft and the values of its samples, 2 on the ground and 4 in the air: which values are assumed, and
-    // the input.
+    // A case is a craft, the signal in 2 samples on the ground and 4 in the air, whether the input is assumed after each
+    // sample, and the value of the input.
     let nan = f64::NAN;
     type Case<'a> = (Craft<'a>, [f64; 6], [bool; 6], [f64; 6]);
     let cases: [Case<'_>; 4] = [

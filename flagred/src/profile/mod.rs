@@ -127,7 +127,7 @@ impl Followed {
     }
 }
 
-/// Another output that is a risk, with its own levels. Its findings are the same as if it were the only risk of the
+/// Another output that is a risk, with its own levels. The findings about it are the same as if it were the only risk of the
 /// profile.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OtherRisk {
@@ -162,12 +162,12 @@ pub struct ProfileInput {
     pub source: Source,
     /// The division by another input, if the input is a ratio.
     pub ratio: Option<Ratio>,
-    /// The value to assume on a vehicle that does not send its signal.
+    /// The value to assume on a vehicle that does not send the signal of the input.
     pub if_missing: Option<f64>,
 }
 
-/// The division that makes an input a ratio: `x / max(per, at_least)` of the value `x` of its source and another input
-/// of the profile, which is not a ratio itself. The rule set does not need to have that other input.
+/// The division of an input by another input of the profile. With the value `x` of the source, the value of the input is
+/// `x / max(per, at_least)`. The other input must not be a ratio itself, and the rule set does not need to have it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ratio {
     /// The name of the input to divide by.

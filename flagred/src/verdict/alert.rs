@@ -148,8 +148,8 @@ impl Alert {
         step
     }
 
-    /// Records the margins of the motors from the moment at which a level begins to be reached. So the motor is chosen
-    /// by the time in which the level was raised, not by the time before or after.
+    /// Records the margins of the motors, starting over whenever a level is first reached. The motor of a finding is thus
+    /// chosen by the period that raised the level, not by the time before or after.
     fn record(&self, reached: &[bool; 2], motors: &mut [Motor]) {
         let begins = |i: usize| reached[i] && self.reached_since_s[i].is_none();
         let (begins, any) = (begins(0) || begins(1), reached[0] || reached[1]);
@@ -338,7 +338,7 @@ mod tests {
     #[test]
     fn of_two_motors_at_zero_the_one_that_stopped_first_is_named() {
         let mut flown = Flown::new([0.0, 0.0]);
-        // A motor at the upper limit is as near to its limit.
+        // An `at_zero_s` of 0 stands for a motor at the upper limit, which is as near to its limit.
         for (at_zero_s, named) in [
             ([0.1, 0.3], 2),
             ([0.3, 0.1], 1),

@@ -10,9 +10,11 @@ use crate::{
     motor::{Motor, less_yaw},
 };
 
-/// Time constants of the averages, in seconds.
+/// The time constant of the recent difference of a motor from the mean, in seconds.
 const LATELY_S: f64 = 5.0;
+/// The time constant of the trims, in seconds.
 const TRIM_S: f64 = 30.0;
+/// The time constant of the mean command, in seconds.
 const LOAD_S: f64 = 3.0;
 
 /// The time for which the trim is learned before anything is compared with it, in seconds.
@@ -21,10 +23,10 @@ const TRIM_KNOWN_AFTER_S: f64 = 10.0;
 /// The minimum share of all shifts that one weak motor must explain. A vehicle that leans towards a motor has 2/3.
 const ONE_MOTOR: f64 = 0.75;
 
-/// Shifts that differ by less than this are equal.
+/// Shifts that differ by less than this count as equal.
 const EQUAL: f64 = 0.02;
 
-/// If the differences between motors exceed those of the last seconds by this, the motors do not slow down together.
+/// If the spread between the motors exceeds that of the last seconds by at least this, the motors do not slow down together.
 const APART: f64 = 0.05;
 
 /// The balance of one flight. The averages of each motor are in [`Motor`].
@@ -168,8 +170,8 @@ fn from_trim(motors: &[Motor], limit: f64) -> Option<Unbalanced> {
     })
 }
 
-/// A motor that exceeds the opposite one by more than the limit. Only this detects a fault that was present before the
-/// trim was learned.
+/// A motor whose command exceeds that of the opposite one by more than the limit. Only this check detects a fault that was
+/// present before the trim was learned.
 fn at_odds(motors: &[Motor], limit: f64) -> Option<Unbalanced> {
     let lately = |motor: &Motor| motor.difference.value;
     let above = less_yaw(motors, lately)

@@ -9,8 +9,9 @@ use super::{
 };
 use crate::{average::Average, motor::Motor};
 
-/// Time constants of the averages, in seconds.
+/// The time constant of the noise, in seconds.
 const NOISE_S: f64 = 10.0;
+/// The time constant of the reserve, in seconds.
 const RESERVE_S: f64 = 3.0;
 
 /// The state of the noise, reserve and imbalance of one flight.
@@ -34,8 +35,9 @@ struct Watch {
 /// A value that exceeds its limit, and the motor to which the value belongs.
 struct Passed {
     measure: Measure,
-    /// The value and its limit, on the effective range.
+    /// The value, on the effective range.
     value: f64,
+    /// The limit of the value, on the effective range.
     limit: f64,
     motor: Option<MotorFinding>,
 }

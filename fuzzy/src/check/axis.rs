@@ -53,7 +53,7 @@ pub(super) fn changes(values: &[f64], holds: impl Fn(f64) -> bool) -> Vec<f64> {
     found
 }
 
-/// Returns the values at which `holds` is true although it is false at both neighbouring numbers.
+/// Returns the values at which `holds` is true, but false at the next smaller and the next larger floating-point number.
 pub(super) fn points(values: &[f64], holds: impl Fn(f64) -> bool) -> Vec<f64> {
     let (Some(&low), Some(&high)) = (values.first(), values.last()) else {
         return Vec::new();

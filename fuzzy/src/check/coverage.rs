@@ -21,9 +21,9 @@ pub struct UncoveredRegion {
     pub sides: Vec<BoxSide>,
     /// The fraction of the input space that the box covers.
     pub share: f64,
-    /// Antecedents that would cover the box, as terms of the inputs named in `sides`.
+    /// The conditions of rules that would cover the box. Each is an AND of one term per input in `sides`.
     pub missing: Vec<Vec<Antecedent>>,
-    /// The number of such antecedents that are omitted from `missing`.
+    /// The number of further conditions that are omitted from `missing`.
     pub more_missing: usize,
     /// Inputs that have no term above the required degree in a part of the box. No rule can cover that part.
     pub weak: Vec<String>,
@@ -145,7 +145,7 @@ fn search(logic: &Logic, shared: &mut SearchBudget) -> (Vec<Cells>, bool) {
     (boxes, true)
 }
 
-/// Returns the formulas that are true in a part of the box; `None` if one is true in the whole box.
+/// Returns the formulas that may be true in a part of the box; `None` if one is true in the whole box.
 fn undecided(logic: &Logic, cells: &Cells, formulas: &[usize]) -> Option<Vec<usize>> {
     let mut open = Vec::new();
     for &index in formulas {
@@ -200,7 +200,8 @@ fn describe(
     output: &str,
     coverage: Option<f64>,
 ) -> UncoveredRegion {
-    /// A thinner box is a single value with a rounding error, and is reported as that value.
+    /// A side narrower than this fraction of the range is a single value with a rounding error, and is reported as that
+    /// value.
     const THIN: f64 = 1e-9;
     let mut sides = Vec::new();
     let mut share = 1.0;
@@ -250,11 +251,11 @@ fn describe(
     }
 }
 
-/// The terms with the highest degree at some value of an interval of an input, from left to right.
+/// The terms that have the highest degree somewhere in an interval of an input, from left to right.
 struct DominantTerms<'v> {
-    /// The terms among these whose degree reaches the coverage at such a value.
+    /// The terms that have the highest degree and reach the coverage at the same value.
     terms: Vec<&'v str>,
-    /// Whether at some value no term reaches the coverage.
+    /// Whether there is a value at which no term reaches the coverage.
     weak: bool,
 }
 

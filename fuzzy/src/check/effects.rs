@@ -13,13 +13,13 @@ use crate::{
 /// The largest difference between degrees that count as equal.
 const EQUAL: f64 = 0.05;
 
-/// The least share of a range on which a constant degree is suspicious.
+/// The minimum share of a range on which a nearly constant degree is reported.
 const MOST: f64 = 0.98;
 
 /// The number of steps over a range.
 const STEPS: u32 = 200;
 
-/// The share of a range on which a term has its largest degree, from which the other terms of the input are too narrow.
+/// If a term has its largest degree on at least this share of the range, the other terms of the input are too narrow.
 const NEARLY_ALL: f64 = 0.98;
 
 /// Adds the findings, in the order of the model's parts.
@@ -98,9 +98,9 @@ impl Degrees<'_> {
     }
 }
 
-/// Adds the terms of an input whose degree is nearly the same on the whole range, or on nearly the whole range,
-/// including values at which another term is true as well. Degrees below [`EQUAL`] on the whole range are reported by
-/// the analysis of terms outside the range, and a `constant` is intended.
+/// Reports the terms of an input whose degree is nearly the same on the whole range, or on nearly the whole range
+/// including values at which another term is true as well. Terms with degrees below [`EQUAL`] on the whole range are
+/// reported by the analysis of terms outside the range; the same degree everywhere is intended for a `constant`.
 fn constants(input: &Variable, at: &ModelPositions<'_>, found: &mut Vec<Diagnostic>) {
     let degrees: Vec<Degrees<'_>> = input
         .terms
@@ -158,7 +158,7 @@ fn constant(input: &Variable, one: &Degrees<'_>, all: &[Degrees<'_>]) -> Option<
                 .any(|(is_top, degree)| is_top && *degree > height - EQUAL)
     };
     let Some(other) = all.iter().find(is_beside).map(|other| other.term) else {
-        // Limits of crisp steps near an end of the range are intended.
+        // A crisp term whose limits are near the ends of the range is intended.
         let x = |step: u32| input.low + (input.high - input.low) * (f64::from(step) / 2000.0);
         let is_between = |degree: f64| degree > EQUAL && degree < one.most - EQUAL;
         if share < NEARLY_ALL || !(0..=2000).any(|step| is_between(one.term.membership(x(step)))) {
@@ -189,7 +189,7 @@ fn has_a_value(model: &Model, formula: &Formula) -> bool {
     const POINTS: u32 = 500;
     let variables: Vec<&Variable> = model.variables().collect();
     (0..=POINTS).any(|point| {
-        // The additive recurrence with the golden ratio; each variable has another multiple of it.
+        // An additive recurrence. Its step differs between variables; that of the first one is 1 / golden ratio.
         let value = |name: &str| {
             let index = variables.iter().position(|variable| variable.name == name);
             let Some((index, variable)) = index.and_then(|i| Some((i, variables.get(i)?))) else {

@@ -8,7 +8,7 @@ use crate::{
     rule::{Condition, Rule},
 };
 
-/// The firing strengths to evaluate for each term, because the centroid of a cut set depends on the height of the cut.
+/// The firing strengths at which each term is evaluated. The centroid of a cut set depends on the height of the cut.
 const STRENGTHS: [f64; 7] = [1.0, 0.9, 0.75, 0.5, 0.25, 0.1, 0.01];
 
 /// Returns the smallest and the largest value of an output if only one consequent of its rules is active, for any
@@ -68,8 +68,8 @@ pub fn extent(model: &Model, output: &str) -> Option<(f64, f64)> {
     {
         return None;
     }
-    // Builds a model with one rule per term, of which one fires at a time: the rule of term i fires with `strength` at
-    // 2 i + strength.
+    // Builds a model with one rule per term. At `selector` = 2 i + strength, only the rule of term i fires, with that
+    // strength.
     let name = |term: usize| -> String { format!("term {term}") };
     let mut selector = Variable::new("selector", 0.0, 2.0 * terms.len().max(1) as f64);
     let mut alone = Model::builder("extent").operators(model.operators_of_output(found));

@@ -31,7 +31,7 @@ impl Probe<'_> {
     pub(super) fn jumps(&mut self) -> Vec<Jump> {
         let mut found = Vec::new();
         let inputs = self.model.inputs.len();
-        // The inputs share the work. If there are very many inputs, only the first ones are examined.
+        // The inputs share the budget of evaluations. If there are very many inputs, only the first ones are examined.
         let most_inputs = (self.evaluations / (4 * MOST_ON_A_LINE)).max(1);
         for input in 0..inputs.min(most_inputs) {
             let lines = self.lines(input);

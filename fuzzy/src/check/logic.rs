@@ -27,7 +27,7 @@ impl Level {
     /// Returns the level at which a rule fires.
     pub(super) fn fires(model: &Model) -> Self {
         let least = model.least_strength;
-        // The default value only absorbs rounding errors.
+        // The default of `least_strength` only absorbs rounding errors, so every degree above 0 counts.
         let strict = least <= LEAST_STRENGTH;
         Level {
             value: if strict { 0.0 } else { least },
@@ -305,7 +305,7 @@ impl Reader<'_> {
 
     fn literal(&mut self, proposition: &Proposition, level: Level) -> Formula {
         if proposition.term.is_none() {
-            // `IS any`: the hedges decide, and not the variable.
+            // The degree of `IS any` depends only on its hedges.
             let hedges = proposition.hedges.iter().rev();
             return match level.is_reached_by(hedges.fold(1.0, |degree, hedge| hedge.of(degree))) {
                 true => Formula::Always,

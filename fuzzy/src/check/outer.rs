@@ -16,7 +16,7 @@ use crate::{
     rule::{Condition, Rule, is_plain_name},
 };
 
-/// The minimum distance from a peak that is reported, as a fraction of the range.
+/// A peak is reported if all values of the output are at least this far away from it, as a fraction of the range.
 pub(super) const NEAR: f64 = 0.01;
 
 /// An outer term of an output whose peak the output never reaches.
@@ -42,7 +42,7 @@ pub(super) fn unreached(
     (low, high): (f64, f64),
 ) -> Vec<UnreachedTerm> {
     let variable = &output.variable;
-    // The proposed numbers do not apply to two membership functions.
+    // The suggested numbers do not apply to type-2 terms, which have two membership functions.
     if output.defuzzifier.is_weighted() || model.has_interval(output) {
         return Vec::new();
     }
@@ -72,7 +72,7 @@ pub(super) fn unreached(
     found.collect()
 }
 
-/// Returns whether all values outside `[low, high]` have the same degree in the outer terms as these ends.
+/// Returns whether the parts of the range outside `[low, high]` are negligible or plateaus of the outer terms.
 pub(super) fn is_all(output: &Output, (low, high): (f64, f64)) -> bool {
     let variable = &output.variable;
     let near = NEAR * (variable.high - variable.low);
@@ -139,7 +139,7 @@ pub(super) fn remedies(model: &Model, output: &Output, unreached: &[UnreachedTer
     let wider = widened(model, output, unreached).map(|[low, high]| {
         let range = format!("range: [{}, {}]", shown(low), shown(high));
         match variable.partition_peaks() {
-            // With a list of names, the terms would move with the range.
+            // The peaks are written out, because terms in a list of names would move with the range.
             Some(peaks) => {
                 let peaks = listed(variable, &peaks, shown);
                 format!("`{range}` with `partition: {peaks}`")
@@ -153,7 +153,7 @@ pub(super) fn remedies(model: &Model, output: &Output, unreached: &[UnreachedTer
         condition.visit(&mut |proposition| is_read |= proposition.variable.text == variable.name);
     }
     if is_read {
-        // Conditions can only read fuzzy sets.
+        // Conditions can only read fuzzy sets, so terms that are numbers are not suggested.
         let wider = wider.as_deref().unwrap_or("a wider `range`");
         return format!("the {method} of a term lies inside the term: write {wider}");
     }

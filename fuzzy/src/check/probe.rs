@@ -72,7 +72,7 @@ impl<'m> Probe<'m> {
         }
     }
 
-    /// Runs an analysis that may use at most this fraction of the remaining work.
+    /// Runs an analysis that may use at most the fraction `part` of the remaining work.
     pub(super) fn with_part<T>(&mut self, part: f64, run: impl FnOnce(&mut Self) -> T) -> T {
         let all = self.steps_left;
         let own = (all as f64 * part) as u64;

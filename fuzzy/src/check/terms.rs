@@ -85,7 +85,7 @@ fn hash_of_degrees(term: &Term, values: &[f64]) -> u64 {
     })
 }
 
-/// Returns the terms that no rule uses, and the variables of which no rule uses a term.
+/// Returns the terms that no rule uses. A variable none of whose terms is used is listed once.
 pub(super) fn unused(model: &Model) -> Vec<TermOf> {
     let mut used: BTreeSet<(&str, &str)> = BTreeSet::new();
     let mut named: BTreeSet<&str> = BTreeSet::new();

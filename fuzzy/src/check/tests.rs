@@ -61,8 +61,8 @@ fn large_rule_sets_are_checked_in_bounded_time() {
         let engine = Engine::new(&document.model).unwrap();
         let started = std::time::Instant::now();
         let report = check(&engine, &Options::default()).unwrap();
-        // The limit allows for unoptimised builds and a busy machine. Without a bound on the work, the second takes
-        // minutes.
+        // The limit allows for unoptimised builds and a busy machine. Without a bound on the work, the second rule set
+        // takes minutes.
         assert!(started.elapsed().as_secs() < 120, "{:?}", started.elapsed());
         assert_eq!(report.reach_complete, is_complete);
         let findings = report.findings(&document.model, &document.spans);

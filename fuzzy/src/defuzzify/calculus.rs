@@ -19,7 +19,7 @@ pub(super) fn activate(
 ) -> SlopedDegree {
     let (h, m) = (strength, membership.degree);
     if implication == Implication::Drastic && 1.0 - h > LEAST_STRENGTH && membership.slope != 0.0 {
-        // Only a single point of the peak remains above 0.
+        // The result is above 0 only at the peak, which is a single point.
         return SlopedDegree::default();
     }
     let degree = implication.of(h, m);
@@ -64,7 +64,7 @@ pub(super) fn aggregate(
     let (by_x, by_y) = match aggregation {
         Aggregation::Sum => (1.0, 1.0),
         Aggregation::ProbabilisticSum => (1.0 - y, 1.0 - x),
-        // A sum that is 1 up to rounding is not cut off.
+        // A sum of exactly 1 is not limited yet.
         Aggregation::BoundedSum if x + y <= 1.0 => (1.0, 1.0),
         Aggregation::Einstein => {
             let below = (1.0 + x * y) * (1.0 + x * y);
@@ -109,7 +109,7 @@ pub(super) fn levels(implication: Implication, strength: f64) -> [Option<f64>; 2
     }
 }
 
-/// Returns the equivalent implication between two levels, where the activated term is not constant.
+/// Returns an implication that gives the same degrees between two levels, where the activated term is not constant.
 pub(super) fn between_levels(implication: Implication) -> Implication {
     match implication {
         Implication::Drastic | Implication::NilpotentMinimum => Implication::Minimum,
@@ -166,7 +166,7 @@ impl Kinks {
 /// An aggregation between its kinks and steps.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Smooth {
-    /// An aggregation with the same degrees, except where they are 1 beyond a step.
+    /// The aggregation that gives the same degrees, except beyond a step, where the degree is 1.
     pub(super) aggregation: Aggregation,
     /// Whether there are steps to 1.
     pub(super) has_steps: bool,
@@ -181,7 +181,7 @@ impl Smooth {
                 (aggregation, true)
             }
             Aggregation::NilpotentMaximum => (Aggregation::Maximum, true),
-            // Terms may cross below the least strength.
+            // Below the least strength, terms may cross without a cut, so the set may have a kink there.
             Aggregation::Drastic => (Aggregation::Maximum, false),
             Aggregation::ProbabilisticSum | Aggregation::Einstein | Aggregation::Hamacher => {
                 (aggregation, false)

@@ -18,14 +18,14 @@
 use crate::model::TypeReduction;
 use crate::table::operators::{larger, smaller};
 
-/// A set or weighted numbers, summarised.
+/// A summary of a set or of weighted numbers.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Summary {
     /// The area and the centroid of the lower set; `None` if it is empty.
     pub(super) lower: Option<(f64, f64)>,
     /// The area and the centroid of the upper set.
     pub(super) upper: (f64, f64),
-    /// The ends of the values at which the upper set is above 0.
+    /// The ends of the interval on which the upper set is above 0.
     pub(super) support: (f64, f64),
 }
 

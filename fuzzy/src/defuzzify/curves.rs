@@ -105,8 +105,8 @@ impl Curves {
         }
     }
 
-    /// Returns the maximum number of cuts that an evaluation adds between two cuts, not counting those of its
-    /// activations.
+    /// Returns the maximum number of cuts that an evaluation adds between two cuts, in addition to a fixed number per
+    /// firing strength.
     pub(crate) fn workspace(&self) -> usize {
         let crossing = self.terms.len().min(MOST_CROSSING);
         4 * crossing * crossing
@@ -217,7 +217,7 @@ impl Curves {
             let is_straight = parts.iter().all(|part| part.line.is_some())
                 && (smooth.keeps_lines || parts.len() == 1);
             let at = |part: f64| from + width * part;
-            // Just inside the piece, beyond a step at the cut.
+            // A position just inside the piece, so that a step at a cut has no effect.
             let inside = |x: f64| x.max(from.next_up()).min(to.next_down());
             let curve = Curve {
                 degree: &|part| self.joined(parts, aggregation, at(part)),

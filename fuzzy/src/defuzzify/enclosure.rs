@@ -42,7 +42,7 @@ enum Method {
     Tsukamoto(Vec<Term>),
 }
 
-/// An interval of values, and whether each of the firing strengths gives a value.
+/// An interval of values. It `is_certain` if all firing strengths between the bounds give a value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ValueEnclosure {
     pub(crate) low: f64,
@@ -78,7 +78,7 @@ impl EnclosureMethod {
         }
     }
 
-    /// Returns the maximum number of cuts of an evaluation, not counting those of its activations.
+    /// Returns the maximum number of cuts of an evaluation, in addition to a fixed number per firing strength.
     pub(crate) fn cuts(&self) -> usize {
         match &self.method {
             Method::Reduced(reduction) | Method::Support(reduction) => reduction.cuts(),
@@ -133,7 +133,7 @@ impl EnclosureMethod {
                     points,
                 )?;
                 let is_certain = match (&self.method, reduction) {
-                    // A sample may miss the set.
+                    // All samples may miss the set, which then has no value.
                     (Method::Support(_), Reduction::Set(_)) => false,
                     (_, Reduction::Set(set)) => set.lower_area(lower, workspace) > 0.0,
                     _ => fires(lower),
@@ -226,8 +226,8 @@ impl Set {
         whole.area
     }
 
-    /// Returns the first or the last bisector: it is first if the set is the upper one on its left, and the lower one
-    /// on its right.
+    /// Returns the first or the last bisector of all sets between the lower and the upper one. The first one bisects the
+    /// set that equals the upper set to the left of it and the lower set to the right of it.
     fn bisector(
         &self,
         is_first: bool,
@@ -268,7 +268,7 @@ impl Set {
         if is_first { from } else { to }
     }
 
-    /// Returns the ends of all values at which a set between both may be highest.
+    /// Returns the first and the last value at which a set between the lower and the upper one may be highest.
     fn maxima(
         &self,
         (lower, upper): (Strengths<'_>, Strengths<'_>),

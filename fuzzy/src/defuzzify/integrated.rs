@@ -52,7 +52,7 @@ impl IntegratedSet {
         }
     }
 
-    /// Returns the maximum number of cuts of an evaluation, not counting those of its activations.
+    /// Returns the maximum number of cuts of an evaluation, in addition to a fixed number per firing strength.
     pub(crate) fn cuts(&self) -> usize {
         match &self.set {
             Set::Pieces(curves) => curves.workspace(),

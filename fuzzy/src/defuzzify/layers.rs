@@ -5,32 +5,33 @@ use alloc::{collections::BTreeMap, vec::Vec};
 use super::PreparedSet;
 use crate::table::{Base, Layers, ShapeKind, Strand};
 
-/// The closed form of the centroid of the maximum of straight terms that are cut.
+/// The closed form of the centroid of a set of straight terms that are cut, and aggregated by maximum.
 #[derive(Debug, Clone)]
 pub(crate) struct PreparedLayers {
     pub(crate) bases: Vec<Base>,
     pub(crate) layers: Vec<Layers>,
 }
 
-/// The maximum number of parts of an output, and of bases. A base takes a number per row, so more would use much
-/// memory.
+/// The maximum number of parts of an output. The number of bases has the same limit, because each base takes a number
+/// per row.
 const MOST_PARTS: usize = 1024;
 /// The minimum difference of degrees; for smaller ones the coefficients would overflow.
 const LEAST_DIFFERENCE: f64 = 1e-100;
 
-/// A part of the range on which a term is straight and the same terms are above it.
+/// A part of the range on which a term is straight and the terms above it do not change.
 struct LayerSegment {
     flank: u32,
     strength: u32,
     /// The indices of the firing strengths of the terms above this part, in ascending order.
     above: Vec<u32>,
-    /// The ends of the part, with the degrees just inside.
+    /// The lower end of the part, with the degree just inside.
     from: (f64, f64),
+    /// The upper end of the part, with the degree just inside.
     to: (f64, f64),
 }
 
 impl PreparedLayers {
-    /// Converts a set whose sections are those of the minimum; `about` is the origin of moments and the unit of length.
+    /// Converts a prepared set whose terms are cut; `about` contains the origin of moments and the unit of length.
     /// `None` if a term is curved or there would be too many layers.
     pub(crate) fn new(prepared: &PreparedSet, about: (f64, f64)) -> Option<Self> {
         let is_straight = prepared
@@ -101,7 +102,7 @@ fn parts(prepared: &PreparedSet) -> Option<Vec<LayerSegment>> {
 }
 
 impl LayerSegment {
-    /// Writes the numbers of a layer, which has an index among the four; `None` if they would overflow.
+    /// Writes the numbers of this part as layer `index` of `four`; `None` if they would overflow.
     fn write(&self, (origin, unit): (f64, f64), index: usize, four: &mut Layers) -> Option<()> {
         let ((from, left), (to, right)) = (self.from, self.to);
         let length = to - from;
@@ -129,7 +130,7 @@ impl LayerSegment {
     }
 }
 
-/// The bases of sets of firing strengths.
+/// The bases, each defined by a set of firing strengths.
 #[derive(Default)]
 struct Bases {
     /// The index of the base of each set, plus one; the sets are in ascending order.
@@ -155,7 +156,7 @@ impl Bases {
             let strength = others.remove(index);
             (others, strength)
         };
-        // Derived from an existing base, if possible.
+        // The new base is derived from an existing one, if possible.
         let near = (0..set.len()).find(|index| self.known(&without(*index).0).is_some());
         let (others, strength) = without(near.unwrap_or(0));
         let others = self.of(&others);

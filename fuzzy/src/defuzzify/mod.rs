@@ -74,11 +74,12 @@ impl<'a> Strengths<'a> {
 /// The method that computes the value of an output, with all data that does not depend on the inputs.
 #[derive(Debug, Clone)]
 pub(crate) enum Method {
-    /// The centroid of the maximum over a partition.
+    /// The centroid of a set whose terms are a partition and aggregated by maximum.
     Partition(Partition),
-    /// The centroid of the maximum of straight terms that are cut.
+    /// The centroid of a set of straight terms that are cut, and aggregated by maximum.
     Layered(PreparedLayers),
-    /// The centroid of a sum of products: the area and moment of each term at a firing strength of 1.
+    /// The centroid of a set of terms that are scaled and summed: the area and moment of each term at a firing strength
+    /// of 1.
     Moments(Vec<Moment>),
     /// A set with known flanks and sections.
     Prepared(PreparedSet),

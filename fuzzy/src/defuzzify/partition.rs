@@ -13,7 +13,7 @@ use crate::table::Pair;
 pub(crate) struct Partition {
     /// The terms from left to right, padded to an even number.
     pairs: Vec<Pair>,
-    /// The index of each term from left to right.
+    /// For each term, its position from left to right.
     ranks: Vec<usize>,
     /// Whether terms are scaled by their firing strengths; otherwise they are cut.
     pub(crate) scales: bool,
@@ -108,7 +108,7 @@ impl Partition {
         Some(partition)
     }
 
-    /// Returns the index of each term's firing strength; the strengths are ordered from left to right.
+    /// Returns, for each term, the index of its firing strength; the strengths are ordered from left to right.
     pub(crate) fn ranks(&self) -> &[usize] {
         &self.ranks
     }

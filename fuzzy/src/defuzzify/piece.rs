@@ -41,9 +41,9 @@ pub(crate) struct Integrals {
     unit: f64,
 }
 
-/// Returns the unit of length of areas over a range of a width. The area times the arm of a moment is proportional to
-/// the square of the width, which overflows or underflows for extreme ranges. The unit is a power of two, so that it
-/// does not change digits; for all other ranges it is 1.
+/// Returns the unit of length for areas over a range with the given width. The area times the arm of a moment is
+/// proportional to the square of the width, which overflows or underflows for extreme ranges. For these, the unit is a
+/// power of two, so that it does not change digits; for all other ranges it is 1.
 pub(crate) fn unit(width: f64) -> f64 {
     if (1e-100..1e100).contains(&width) {
         return 1.0;
@@ -94,7 +94,7 @@ impl Integrals {
         }
         let width = piece.to - piece.from;
         let (start, length) = ((from - piece.from) / width, (to - from) / width);
-        // The end that is nearer keeps its digits.
+        // The degree is computed from the nearer end, so that it is exact at both ends.
         let line = |x: f64| {
             let slope = (piece.right - piece.left) / width;
             if x - piece.from <= piece.to - x {
@@ -136,7 +136,7 @@ impl Piece<'_> {
         (self.to - self.from) * mean
     }
 
-    /// Returns the value up to which the piece has an area, which must not exceed that of the whole piece.
+    /// Returns the value up to which the area of the piece is `area`, which must not exceed that of the whole piece.
     pub(crate) fn where_area_is(&self, area: f64) -> f64 {
         let width = self.to - self.from;
         if let Some(curve) = self.curve {
@@ -157,9 +157,10 @@ impl Piece<'_> {
     }
 }
 
-/// The maximum number of successive halvings of an interval, and of all halvings of a piece. They suffice to locate
-/// several missed kinks, and end the search if rounding prevents agreement of the halves.
+/// The maximum number of successive halvings of an interval.
 const DEEPEST: usize = 48;
+/// The maximum number of all halvings of a piece. They suffice to locate several missed kinks; the limit ends the search
+/// if rounding prevents agreement of the halves.
 const MOST_HALVINGS: usize = 400;
 
 /// The relative difference up to which an interval and its halves agree. The result is then accurate to rounding where

@@ -30,8 +30,7 @@ pub(crate) struct PreparedSet {
     pub(crate) knots: Vec<Knot>,
 }
 
-/// The maximum sizes. A larger set would not fit the cache of the processor; it is integrated in each evaluation
-/// instead.
+// A set with more elements would not fit the cache of the processor; it is integrated in each evaluation instead.
 const MOST_STRANDS: usize = 16_384;
 const MOST_TERMS: usize = 64;
 const MOST_FLANKS: usize = 512;
@@ -144,7 +143,7 @@ impl PreparedSet {
         };
         if stretch.is_curved {
             (flank.kind, flank.parameters) = kind(&term.membership_function, flank.rises());
-            // The tail of a wider Gaussian is mostly outside the range, which would lose digits.
+            // Most of the tail of a wider Gaussian is outside the range; the formula for the tail would lose digits.
             if flank.kind == ShapeKind::GAUSSIAN && flank.parameters[1] <= measure.unit {
                 let foot = if flank.rises() { from } else { to };
                 flank.beyond = flank.beyond_of(foot, measure);

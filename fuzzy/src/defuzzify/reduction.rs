@@ -123,7 +123,7 @@ impl Reduction {
         Reduction::Set(Box::new(set))
     }
 
-    /// Returns the maximum number of cuts of an evaluation, not counting those of its activations.
+    /// Returns the maximum number of cuts of an evaluation, in addition to a fixed number per firing strength.
     pub(crate) fn cuts(&self) -> usize {
         match self {
             Reduction::Set(set) => set.lower.workspace().max(set.upper.workspace()),
@@ -423,7 +423,8 @@ mod tests {
         // Equal bounds give a number.
         let crisp = points(&[(4.0, 0.5, 0.5), (8.0, 0.5, 0.5)]);
         assert_eq!(average(&crisp), Some((6.0, 6.0)));
-        // Without a lower bound every average is possible, and also each single number.
+        // If all lower bounds are 0, the average can be any value from the smallest to the largest number whose upper
+        // bound is above 0.
         let open = points(&[(4.0, 0.0, 0.5), (8.0, 0.0, 0.1), (9.0, 0.0, 0.0)]);
         assert_eq!(average(&open), Some((4.0, 8.0)));
         assert_eq!(average(&points(&[(4.0, 0.0, 0.0)])), None);

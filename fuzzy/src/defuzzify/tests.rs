@@ -272,7 +272,7 @@ fn a_drastic_aggregation_is_1_where_two_terms_are_over_the_least_strength() {
     }
 }
 
-/// The same set in different units of length.
+/// Compares the same set in different units of length.
 #[test]
 fn wide_and_narrow_ranges_keep_their_precision() {
     let triangle = |unit: f64| MembershipFunction::Triangle {

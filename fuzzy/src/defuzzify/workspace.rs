@@ -9,11 +9,11 @@ use super::curves::{ActivatedTerm, Run};
 pub(crate) struct Workspace {
     /// The cuts of an interval.
     pub(super) cuts: Vec<f64>,
-    /// The maximum number of cuts of an interval, because the capacity of the vector depends on the allocator.
+    /// The maximum number of cuts of an interval. The capacity of `cuts` may be larger, depending on the allocator.
     pub(super) most_cuts: usize,
     pub(super) runs: Vec<Run>,
     pub(super) parts: Vec<ActivatedTerm>,
-    /// The ends and the degrees there of straight pieces; without capacity unless there is a type reduction.
+    /// Straight pieces: their ends, and the degrees there. The capacity is 0 unless there is a type reduction.
     pub(super) lines: Vec<[f64; 4]>,
     pub(crate) steps: Steps,
 }
@@ -43,15 +43,15 @@ impl Steps {
     }
 }
 
-/// The maximum number of straight pieces of a lower and an upper set together that a type reduction keeps. More pieces are
-/// computed again in each step of the search.
+/// The maximum number of straight pieces that a type reduction stores, of the lower and the upper set together. If there
+/// are more, the pieces are computed again in each step of the search.
 const MOST_LINES: usize = 256;
 
 /// The approximate number of evaluations of each term that the integration of a curved piece takes.
 pub(super) const STEPS_OF_A_CURVE: usize = 16;
 
 impl Workspace {
-    /// Allocates memory for `activations` and `cuts`.
+    /// Allocates memory for a number of activated terms and a number of cuts.
     pub(crate) fn new(activations: usize, cuts: usize) -> Self {
         let most_cuts = cuts.max(activations + 2);
         Workspace {

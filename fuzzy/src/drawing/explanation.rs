@@ -13,8 +13,9 @@ use crate::{
 };
 
 const WIDTH: f64 = 640.0;
-/// The height of the frame of a variable in an explanation, and the height including its labels.
+/// The height of the frame of a variable in an explanation.
 const FRAME: f64 = 96.0;
+/// The height of a frame including its labels.
 const BLOCK: f64 = 166.0;
 /// The length of the bar of a rule with strength 1.
 const RULE_BAR: f64 = 60.0;

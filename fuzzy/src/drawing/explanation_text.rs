@@ -14,8 +14,9 @@ use crate::{
 
 /// The length of a bar for degree 1.
 const BAR: usize = 20;
-/// The number of columns and rows of the drawing of an aggregated set.
+/// The number of columns of the drawing of an aggregated set.
 const COLUMNS: usize = 60;
+/// The number of rows of the drawing of an aggregated set.
 const ROWS: usize = 6;
 
 /// Formats an explanation as text: the degrees of the inputs' terms, the rules that fired, and the aggregated set of
@@ -84,7 +85,7 @@ fn add_degrees(text: &mut String, terms: &[Degree], value: f64) {
     }
 }
 
-/// Formats a degree or a strength; of a type-2 term both bounds.
+/// Formats a degree or a firing strength; with type-2 terms, both bounds.
 fn bounds(lower: Option<f64>, upper: f64) -> String {
     match lower {
         None => format!("{upper:.5}"),

@@ -16,8 +16,9 @@ const TABLE: usize = 6;
 /// The coverage from which a cell counts as covered.
 const COVERED: f64 = 0.5;
 
-/// The maximum number of columns and rows of a drawing.
+/// The maximum number of columns of a drawing.
 const MOST_COLUMNS: usize = 61;
+/// The maximum number of rows of a drawing.
 const MOST_ROWS: usize = 26;
 
 /// Formats a slice as text: a digit for the tenth of the range that contains the value, or a letter if the value was

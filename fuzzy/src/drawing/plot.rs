@@ -54,10 +54,13 @@ impl PlotLine {
     }
 }
 
-/// The side of a plot, the margins, and the width of the legend.
+/// The width and the height of a plot.
 const SIDE: f64 = 360.0;
+/// The margin to the left of each plot.
 const LEFT: f64 = 70.0;
+/// The margin above the plots.
 const TOP: f64 = 44.0;
+/// The width of the legend.
 const LEGEND: f64 = 260.0;
 
 /// Returns an SVG of plots side by side, with a common legend that lists the lines of the first plot.

@@ -152,7 +152,7 @@ impl Slice {
         })
     }
 
-    /// Returns the cell at a point of each axis; an empty one outside.
+    /// Returns the cell at a point of each axis; an empty cell if the point is outside.
     pub fn cell(&self, x: usize, y: usize) -> Cell {
         let cell = self.cells.get(x * self.rows() + y);
         cell.copied().unwrap_or_default()

@@ -12,12 +12,14 @@ use super::{
 /// The maximum number of points along an axis; more points only increase the file size.
 const MOST_POINTS: usize = 41;
 
-/// The direction of view in degrees: rotation about the vertical axis, then tilt.
+/// The rotation of the view about the vertical axis, in degrees; it is applied before the tilt.
 const TURN_DEG: f64 = 35.0;
+/// The tilt of the view, in degrees.
 const TIP_DEG: f64 = 28.0;
 
-/// The middle of the drawing and its size, in pixels.
+/// The middle of the drawing, in pixels.
 const MIDDLE: (f64, f64) = (280.0, 258.0);
+/// The size of the unit cube in the drawing, in pixels.
 const SIZE: f64 = 285.0;
 
 /// A projection of the unit cube onto the document. It has no perspective, so that equal heights stay equal.
@@ -119,7 +121,7 @@ fn floor(document: &mut SvgDocument, view: &View, slice: &Slice, y: &Axis) {
     }
     for tick in slice.range.ticks(5.0) {
         let z = slice.range.share(tick);
-        // On the two walls behind the surface.
+        // Grid lines on the two walls behind the surface.
         document.line(view.at(0.0, 0.0, z), view.at(0.0, 1.0, z), "grid");
         document.line(view.at(0.0, 1.0, z), view.at(1.0, 1.0, z), "grid");
         let (left, top) = view.at(0.0, 0.0, z);

@@ -12,8 +12,9 @@ use super::{
 use crate::model::{MembershipFunction, Model, Output, Term, Variable, type2::Bound};
 
 const WIDTH: f64 = 640.0;
-/// The height of a frame, and the height including its labels.
+/// The height of a frame.
 const FRAME: f64 = 110.0;
+/// The height of a frame including its labels.
 const BLOCK: f64 = 176.0;
 
 /// Returns an SVG of the terms of every input and output of a model. Below it, `curves` are drawn: the outputs of a
@@ -66,7 +67,7 @@ fn drawn(model: &Model, before: Option<&Model>, curves: &[Slice]) -> String {
         if output.defuzzifier.takes_numbers() || output.is_discrete() {
             let mut sticks_of = numbers(output);
             let old = old.map(numbers).unwrap_or_default().into_iter();
-            // The old numbers are half as high.
+            // The sticks of the old numbers are half as high.
             let moved = old.filter(|old| !sticks_of.contains(old));
             let moved = moved
                 .map(|(at, weight, colour, text)| (at, weight / 2.0, colour, text + " before"));
@@ -124,8 +125,9 @@ fn formula(term: &Term, variable: &Variable) -> Option<String> {
     Some(format!("{} = {value}", term.name))
 }
 
-/// The number of columns and rows of a drawing as text.
+/// The number of columns of a drawing as text.
 const COLUMNS: usize = 60;
+/// The number of rows of a drawing as text.
 const ROWS: usize = 8;
 
 /// Formats the terms of every input and output of a model as text, with one character per term, and the curves below

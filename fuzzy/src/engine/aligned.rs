@@ -3,12 +3,12 @@
 use alloc::{vec, vec::Vec};
 use core::ops::{Deref, DerefMut};
 
-/// Numbers with `L` rows each. If `L` is larger than 1, they start at a cache line, because accessing a vector that
-/// spans two lines takes twice as long.
+/// Several numbers for each of `L` rows. If `L` is larger than 1, they start at a cache line, because accessing a vector
+/// that spans two lines takes twice as long.
 #[derive(Debug, Clone)]
 pub(super) struct AlignedRows<const L: usize> {
     numbers: Vec<f64>,
-    /// The index of the first number of the first row.
+    /// The index in `numbers` at which the rows start.
     start: usize,
 }
 

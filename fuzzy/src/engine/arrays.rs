@@ -89,7 +89,7 @@ impl OwnedTable {
         }
         let alive = literals.iter().map(Literals::most_alive).max().unwrap_or(0);
         table.sizes.alive = alive as u32 + 2;
-        // The axes of a uniform table have their own lines.
+        // A uniform table stores the lines of its axes itself, so it needs none here.
         let reads_literals = table.sizes.degrees > 0 || table.conjunctions == Conjunctions::Dense;
         for (range, literals) in inputs.iter().zip(literals) {
             if reads_literals {

@@ -66,7 +66,7 @@ impl Engine {
         let task = |memory: &mut Memory, first: usize, outcomes: &mut [Outcome]| {
             let range = first..first + outcomes.len() / outputs;
             if memory.rows.is_none() {
-                // Results for several rows have no intervals.
+                // The outcomes are written directly, because `Results` cannot store intervals.
                 for (row, outcomes) in range.zip(outcomes.chunks_exact_mut(outputs)) {
                     memory.take_row(columns, row);
                     self.outcomes(&mut memory.row, &memory.values, outcomes);
@@ -271,9 +271,11 @@ impl Engine {
 pub(crate) struct Memory {
     /// Memory for a block of rows, if the model supports evaluation in blocks.
     rows: Option<RowsScratch>,
-    /// Memory for a single row, with its values and outcomes.
+    /// Memory for the evaluation of a single row.
     row: Scratch,
+    /// The values of the inputs in a single row.
     values: Vec<f64>,
+    /// The outcomes of a single row.
     outcomes: Vec<Outcome>,
     /// The results, one element per output.
     results: Vec<Results<ROWS>>,

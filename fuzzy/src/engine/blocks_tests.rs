@@ -77,7 +77,7 @@ blocks:
 fn blocks_have_their_own_operators() {
     let engine = engine(BLOCKS);
     let outcomes = engine.evaluate(&[0.25, 0.5]).unwrap();
-    // The strengths are 0.75 0.5 and 0.25 0.5. The areas scale with them; the shoulders have an area of 4.5 and
+    // The strengths are 0.75 * 0.5 and 0.25 * 0.5. The areas scale with them; the shoulders have an area of 4.5 and
     // centroids at 3 and 6.
     let expected = (0.375 * 3.0 + 0.125 * 6.0) / 0.5;
     assert!((outcomes[0].value().unwrap() - expected).abs() < 1e-12);
@@ -285,7 +285,7 @@ fn activation() -> impl Strategy<Value = Activation> {
     })
 }
 
-/// Any two blocks over two inputs and two outputs, with rules that contain AND, OR and NOT.
+/// Generates models with two blocks over two inputs and two outputs, with rules that contain AND, OR and NOT.
 fn any_blocks() -> impl Strategy<Value = Model> {
     let and = select(Conjunction::ALL.to_vec());
     let or = select(Disjunction::ALL.to_vec());

@@ -73,7 +73,7 @@ impl Stage {
         }
     }
 
-    /// Returns whether an output of the stage is an interval.
+    /// Returns the parts that compute intervals; `None` if no output of the stage is an interval.
     pub(super) fn bounds(&self) -> Option<&Bounds> {
         match &self.single {
             super::SingleRowMethod::Bounds(bounds) => Some(bounds),
@@ -166,7 +166,7 @@ impl Bounds {
         }
     }
 
-    /// Returns the maximum number of cuts of an evaluation, not counting those of its activations.
+    /// Returns the maximum number of cuts of an evaluation, in addition to a fixed number per firing strength.
     pub(super) fn cuts(&self) -> usize {
         let reductions = self.reductions.iter().flatten();
         let cuts = reductions.map(|(_, reduction)| reduction.cuts());

@@ -28,7 +28,7 @@ fn interval(engine: &Engine, inputs: &[f64]) -> (f64, f64) {
     (outcome.low().unwrap(), outcome.high().unwrap())
 }
 
-/// The interval of centroids by bisection over sums of samples.
+/// Returns the interval of centroids, computed by bisection with sums over samples.
 fn sampled(range: (f64, f64), bounds: impl Fn(f64) -> (f64, f64)) -> (f64, f64) {
     const SAMPLES: usize = 200_000;
     let step = (range.1 - range.0) / SAMPLES as f64;
@@ -274,7 +274,7 @@ outputs:
         let tip = second.evaluate(&[food, mood.value().unwrap()]).unwrap()[0];
         assert_eq!(outcomes[1].state, tip.state, "{food}");
         assert!(matches!(tip.state, State::Interval { .. }));
-        // An explanation has the same ends, and the bounds of the strengths.
+        // An explanation contains the same ends, and the bounds of the strengths.
         let explanation = chain.explain(&[food]).unwrap();
         assert_eq!(explanation.outputs[1].low, outcomes[1].low());
         for rule in &explanation.rules {

@@ -13,7 +13,7 @@ pub(super) struct Chain {
     /// The position of the first stage in the model.
     first: OwnedStageIndices,
     later: Vec<LaterStage>,
-    /// The same stages as plain arrays: a [`table::Chain`].
+    /// The same stages as plain arrays. This field and the next two contain the fields of a [`table::Chain`].
     pub(super) flat: OwnedTable,
     pub(super) stages: Vec<table::Stage>,
     pub(super) places: Vec<u32>,

@@ -203,8 +203,8 @@ fn fired(context: &ConditionContext<'_>) -> Vec<FiredRule> {
     fired
 }
 
-/// Returns a bound of the degree of a condition, computed from its syntax tree. Without type-2 terms both bounds are the
-/// degree.
+/// Returns a bound of the degree of a condition, computed from its syntax tree. Without type-2 terms both bounds equal
+/// the degree.
 pub(super) fn holds(
     condition: &Condition,
     operators: Operators,

@@ -103,8 +103,8 @@ pub struct ExplainedOutput {
     pub rules: Vec<Share>,
     /// The degree of the value in each term; empty for Takagi-Sugeno outputs.
     pub terms: Vec<Degree>,
-    /// The aggregated set, with interval type-2 terms the upper one: `(value, degree)` at evenly spaced values over the range, or at the singletons. Empty for
-    /// Takagi-Sugeno and Tsukamoto outputs.
+    /// The aggregated set; with interval type-2 terms, the upper one. It is a list of `(value, degree)` at evenly spaced
+    /// values over the range, or at the singletons. Empty for Takagi-Sugeno and Tsukamoto outputs.
     pub set: Vec<(f64, f64)>,
 }
 

@@ -144,7 +144,7 @@ pub struct Scratch {
     own: Vec<Outcome>,
     /// The outcomes of all outputs of the model, used to search for a rule.
     outcomes: Vec<Outcome>,
-    /// The stage of the latest search for a rule.
+    /// The number of the stage in which a rule was searched for last.
     asked: usize,
 }
 
@@ -385,7 +385,7 @@ impl Stage {
                 strengths: AlignedRows::new(strengths.next_multiple_of(8)),
                 strongest: vec![StrongestRule::NONE; self.outputs.len()],
             },
-            // A term crosses two levels of its implication, on its rising and on its falling side.
+            // Each term adds cuts where it crosses the two levels of its implication, while rising and while falling.
             workspace: {
                 let cuts = 5 * strengths + cuts.max().unwrap_or(0);
                 let workspace = Workspace::new(strengths, cuts);

@@ -10,8 +10,8 @@ use super::{Engine, EvaluateError, Explanation, NamedOutput, Outcome, Outcomes};
 use crate::fields::Fields;
 
 /// The outcomes of an evaluation with the names of their outputs, in the order of the model. They can be indexed by
-/// name; like that of a map, indexing panics if there is no output of this name, whereas [`NamedOutcomes::get`] returns
-/// `None`.
+/// name, as in `outcomes["speed"]`. This panics if there is no output with the name; [`NamedOutcomes::get`] returns
+/// `None` instead.
 #[derive(Clone)]
 pub struct NamedOutcomes<'e> {
     outputs: &'e [NamedOutput],

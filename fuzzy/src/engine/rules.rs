@@ -84,11 +84,14 @@ impl FiringOperators {
 /// The literals and actions of a plain AND.
 type PlainConjunction<'d> = (&'d [u32], &'d [Action]);
 
-/// The maximum number of cells of a dense table, and its maximum number of cells per rule.
+/// The maximum number of cells of a dense table.
 const MOST_CELLS: usize = 1 << 16;
+/// The maximum number of cells per rule of a dense table.
 const MOST_CELLS_A_RULE: usize = 32;
-/// The maximum number of axes. With more, an evaluation would visit more than 64 cells, most of them with degree 0.
+/// The maximum number of axes of a uniform table. With more, an evaluation would visit more than 64 cells, most of them
+/// with degree 0.
 const MOST_AXES: usize = 6;
+/// The maximum number of actions per cell of a uniform table.
 const MOST_ACTIONS_A_CELL: usize = 2;
 /// The maximum number of steps for which evaluating all rules is faster than finding those that fire.
 const MOST_STEPS_OF_FEW_RULES: usize = 64;

@@ -35,7 +35,7 @@
 //!
 //! | rules | layout | fired by | when |
 //! |---|---|---|---|
-//! | ANDs of straight terms, at most two alive per input | [`Conjunctions::Uniform`] | `table/conjunctions.rs` | up to 6 inputs, 2 consequents per cell |
+//! | ANDs of straight terms, at most two above 0 per input | [`Conjunctions::Uniform`] | `table/conjunctions.rs` | up to 6 inputs, 2 consequents per cell |
 //! | other ANDs | [`Conjunctions::Dense`] | `table/conjunctions.rs` | up to 65,536 cells and 32 cells per rule |
 //! | ANDs in larger tables | [`Conjunctions::Trie`] | `table/conjunctions.rs` | always possible |
 //! | any other conditions, and ANDs of small rule sets | programs | `table/firing.rs` | always possible |

@@ -6,7 +6,7 @@ use super::*;
 use crate::model::{MembershipFunction, Model, NoRuleFires, Output, Variable};
 use crate::rule::{Condition, Rule};
 
-/// `x` in [0, 10] determines `y` in [0, 100]; no rule covers 4 to 6.
+/// Returns a model in which `x` in [0, 10] determines `y` in [0, 100], and no rule covers 4 to 6.
 fn gap(when_no_rule_fires: NoRuleFires) -> Model {
     let shoulder = |top, foot| MembershipFunction::LeftShoulder { top, foot };
     Model::builder("gap")
@@ -191,7 +191,7 @@ fn same_bits(one: &Outcome, other: &Outcome) -> bool {
         && core::mem::discriminant(&one.state) == core::mem::discriminant(&other.state)
 }
 
-/// Rules over all kinds of terms that a batch evaluates for several rows together.
+/// Returns a model with all kinds of terms for which a batch evaluates several rows together.
 fn slopes(when_no_rule_fires: NoRuleFires) -> Model {
     let triangle = |left, peak, right| MembershipFunction::Triangle { left, peak, right };
     let risk = Variable::new("z", -1.0, 3.0)

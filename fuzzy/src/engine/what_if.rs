@@ -60,8 +60,9 @@ fn rule_number<S: serde::Serializer>(rule: &Option<usize>, to: S) -> Result<S::O
 }
 
 impl Engine {
-    /// Returns, for each input, the nearest values below and above its current one at which a different term of it has
-    /// the largest degree, or a different rule is the dominant rule of an output. The other inputs keep their values.
+    /// Returns, for each input, the nearest values below and above its current one at which a different term of the
+    /// input has the largest degree, or a different rule is the dominant rule of an output. The other inputs keep their
+    /// values.
     ///
     /// The search examines 200 evenly spaced steps over the range. A change that is reversed before the next step may
     /// be missed.

@@ -26,7 +26,7 @@ pub(super) const COMPARISONS: [(&str, Comparison); 6] = [
     ("above", Comparison::Above),
 ];
 
-/// Reads the blocks; keys that a block omits are as in `model`.
+/// Reads the blocks; values of keys that a block omits are taken from `model`.
 pub(super) fn read(
     node: &Node,
     model: &mut Model,

@@ -17,7 +17,7 @@ use crate::{
     tree::{Fields, Node, Value},
 };
 
-/// The keys beside a membership function that give a term a lower one.
+/// The keys beside a membership function that define the lower membership function of the term.
 pub(super) const KEYS: [&str; 3] = ["blur", "lower_scale", "lower_lag"];
 
 /// The suggestion for membership functions without a short form.
@@ -44,7 +44,7 @@ pub(super) fn extended(
         return None;
     }
     if term.membership_function.validate().is_err() {
-        // The parameters are reported later.
+        // Invalid parameters are reported by the validation.
         return Some(term);
     }
     if let Some(entry) = blur {
@@ -107,7 +107,7 @@ fn blurred(
     let range = (variable.low, variable.high);
     let width = range.1 - range.0;
     if !(width > 0.0 && width.is_finite()) {
-        // The range is reported on its own.
+        // An invalid range is reported on its own.
         return None;
     }
     let function = &term.membership_function;

@@ -102,8 +102,7 @@ fn changed(mut tree: Node, change: &mut impl FnMut(&str, &mut Node)) -> Node {
     tree
 }
 
-/// Converts a list of named entries to a mapping; `None` for other values, including lists of which no entry is a
-/// mapping.
+/// Converts a list of named entries to a mapping; `None` for other values, including lists that contain no mapping.
 fn mapping(what: &str, list: &Node, findings: &mut Vec<Diagnostic>) -> Option<Node> {
     let Value::List(items) = &list.value else {
         return None;
@@ -154,8 +153,8 @@ fn mapping(what: &str, list: &Node, findings: &mut Vec<Diagnostic>) -> Option<No
     Some(with(list, Value::Mapping(entries)))
 }
 
-/// Reads names with a `-` before them, with their keys in the same column below, as named entries:
-/// `- heat:` and, below the `h`, `range: [0, 40]`. They are a single error.
+/// Reads a list in which a `-` precedes each name and the keys follow in the column of the name: `- heat:` and, below
+/// the `h`, `range: [0, 40]`. Returns the named entries, and a single error for all of them.
 fn dashes(what: &str, items: &[Node]) -> Option<(Vec<(Node, Node)>, Diagnostic)> {
     let entries = items.iter().map(|item| match &item.value {
         Value::Mapping(own) => match own.as_slice() {

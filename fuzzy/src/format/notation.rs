@@ -87,14 +87,14 @@ pub(super) fn colons_without_space(entries: &[Entry<'_>]) -> Option<String> {
     (!peaks.is_empty()).then(|| format!("write `{{{}}}`", peaks.join(", ")))
 }
 
-/// Returns the defuzzifier that fits the terms of a variable, for one whose word is not known.
+/// Returns the defuzzifier that fits the terms of a variable, for use in place of an unknown word.
 pub(super) fn likely_defuzzifier(variable: &Variable) -> Option<Defuzzifier> {
     let is_number = |term: &Term| term.membership_function.number().is_some();
     let mut terms = variable.terms.iter();
     terms.any(is_number).then_some(Defuzzifier::WeightedAverage)
 }
 
-/// Returns a suggestion for a word of other programs in place of what happens if no rule fires.
+/// Returns a suggestion for a value of `when_no_rule_fires` that is a word of another program.
 pub(super) fn meant_by(word: &str) -> Option<String> {
     let is = |words: &[&str]| words.iter().any(|known| word.eq_ignore_ascii_case(known));
     if is(&["keep", "hold", "last", "nc", "no_change"]) {

@@ -44,7 +44,7 @@ pub(super) fn read(
     let before = model.rules.len();
     let mut rules = Vec::with_capacity(items.len());
     for (i, item) in items.iter().enumerate() {
-        // A rule in several entries is reported at its first one.
+        // A rule that is split into several entries is reported at the first one.
         let last = i.checked_sub(1).and_then(|last| items.get(last));
         if continues(item) && last.and_then(Node::as_text).is_some() {
             spans.rules_unread = true;

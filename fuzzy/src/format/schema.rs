@@ -247,7 +247,7 @@ fn variable_key(key: &str) -> Node {
             "How the interval of an output with interval type-2 terms is computed (default: `exact`)",
             &TYPE_REDUCTIONS,
         ),
-        // All keys that are read have an entry above; a new key is at least allowed.
+        // Every key that is read has an entry above. If a new key is forgotten, the schema allows any value for it.
         _ => Node::mapping(Entries::new()),
     }
 }

@@ -87,7 +87,7 @@ fn term(
     footprints::extended(&term, ordinary, &fields, variable, spans, findings)
 }
 
-/// Returns the term of a Gaussian with intervals, which has no key but `height` beside it.
+/// Returns the term of a Gaussian with intervals. The only other key that its mapping may contain is `height`.
 fn uncertain(
     term: &str,
     name: String,

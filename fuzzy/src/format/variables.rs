@@ -44,14 +44,14 @@ pub(super) const OUTPUT_KEYS: [&str; 13] = [
     "type_reduction",
 ];
 
-/// The suggestion for the inputs or the outputs; the first field is the key.
+/// Returns the suggestion for how to write the inputs or the outputs; `key` is `inputs` or `outputs`.
 fn variables_help(key: &str) -> String {
     format!(
         "write each by its name: `{key}: {{speed: {{range: [0, 10], partition: [low, high]}}}}`"
     )
 }
 
-/// The suggestion for a variable.
+/// Returns the suggestion for how to write a variable.
 fn variable_help(name: &str) -> String {
     format!("write `{name}: {{range: [0, 10], partition: [low, high]}}`")
 }
@@ -100,7 +100,7 @@ pub(super) fn outputs(
             if let Some(node) = fields.get("defuzzifier") {
                 let key = format!("the defuzzifier of {what}");
                 let word = node.choice(&key, &DEFUZZIFIERS, findings);
-                // In place of an unknown word, one that fits the terms is used, so that they are not reported.
+                // An unknown word is replaced by a defuzzifier that fits the terms, so that these are not reported too.
                 let likely = || likely_defuzzifier(&output.variable);
                 output.defuzzifier = word.or_else(likely).unwrap_or(output.defuzzifier);
             }
@@ -283,7 +283,7 @@ fn variable(
             if let Some(empty) = empty
                 && !stray.is_empty()
             {
-                // The terms are in the column of their key.
+                // The terms are in the same column as their key: a single finding suggests to indent them.
                 fields.withdraw(findings);
                 if let Some(finding) = findings.last_mut() {
                     finding.help =

@@ -70,7 +70,7 @@ pub fn word_of_or(or: Disjunction) -> &'static str {
     word_of(&DISJUNCTIONS, or)
 }
 
-/// Reads operators from some of the keys; omitted operators are as in `otherwise`.
+/// Reads operators from some of the keys; omitted operators are taken from `otherwise`.
 pub(super) fn operators(
     node: &Node,
     what: &str,

@@ -74,7 +74,7 @@ const LONGEST: usize = 1000;
 
 #[cfg(feature = "alloc")]
 impl Formula {
-    /// Returns the names of the variables that it reads, each once, in the order of their first occurrence.
+    /// Returns the names of the variables that the formula reads, each once, in the order of their first occurrence.
     pub fn variables(&self) -> impl ExactSizeIterator<Item = &str> {
         self.variables.iter().map(|variable| &*variable.name)
     }

@@ -9,7 +9,8 @@ use crate::model::{MembershipFunction, Variable};
 pub(super) struct Consequents {
     /// The value of each term that is a number, or the peak of each fuzzy set.
     pub(super) peaks: Vec<f64>,
-    /// Whether all terms are numbers (constants or singletons). Values between numbers have no memberships.
+    /// Whether all terms are numbers (constants or singletons). A value between two numbers belongs to both of them, with
+    /// degrees that depend on the distances.
     are_numbers: bool,
 }
 

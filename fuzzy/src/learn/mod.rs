@@ -124,8 +124,8 @@ impl Learner {
     /// Creates a learner for the variables of a model with one output.
     ///
     /// # Errors
-    /// The model does not have exactly one output, or has rule blocks or type-2 terms; a variable has no terms; or the settings name an
-    /// input that the model does not have.
+    /// The model does not have exactly one output, or has rule blocks or type-2 terms; a variable has no terms; or the
+    /// settings name an input that the model does not have.
     pub fn new(model: &Model, settings: Settings) -> Result<Learner, LearnError> {
         let [output] = model.outputs.as_slice() else {
             return Err(LearnError::Outputs {
@@ -207,7 +207,7 @@ impl Learner {
             self.consequents.highest(consequent, *output),
             self.settings.resolution,
         ) {
-            // In a gap between terms, the sample votes for the nearest term.
+            // The sample votes for the term with the highest degree or, in a gap between terms, for the nearest term.
             (_, Resolution::Mean) => (self.consequents.nearest(consequent, *output), 1.0),
             (Some(vote), _) => vote,
             (None, _) => {

@@ -11,7 +11,8 @@ use crate::model::Variable;
 
 /// The maximum number of passes over the inputs. The means converge long before.
 const MOST_ROUNDS: usize = 1000;
-/// The weight of a rule without samples, as a fraction of the largest weight of a sample: it adapts to its neighbours.
+/// The weight of a rule without samples, as a fraction of the largest weight of a sample. It is so small that the rule
+/// adapts to its neighbours.
 const NO_SAMPLES: f64 = 1e-6;
 
 /// Changes consequents so that they satisfy the required directions, and returns the number of changed ones.

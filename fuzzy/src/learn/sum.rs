@@ -18,7 +18,7 @@ impl Sum {
         const BIAS: i32 = 1023;
         let bits = x.to_bits();
         let exponent = (bits >> DIGITS) as i32;
-        // At most 0, not finite, or smaller than the smallest step.
+        // Ignores numbers that are not finite or at most 0, and subnormal numbers, which are below the smallest step.
         if !(1..0x7ff).contains(&exponent) {
             return;
         }

@@ -47,8 +47,8 @@ const TABLE_1: [[f64; 3]; 4] = [
 #[test]
 fn the_papers_printed_rows_make_three_rules() {
     let learned = learn(Settings::default(), &TABLE_1);
-    // Computed by hand: products of the memberships of the terms with the highest membership of each value. Rows 2 and
-    // 383 have the same antecedent: 0.70469 * 1 * 1 is more than 0.64687 * 0.53689 * 0.84061.
+    // Computed by hand: the degree of a row is the product of the highest memberships of its values. Rows 2 and 383 have
+    // the same antecedent: 0.70469 * 1 * 1 is more than 0.64687 * 0.53689 * 0.84061.
     let expected = [
         (
             "IF margin IS very_low AND spread IS high THEN risk IS high",
@@ -240,8 +240,8 @@ rules: []
         ..Settings::default()
     };
     let mut learner = Learner::new(&model, settings).unwrap();
-    // There are no samples at mild and warm; the single sample of a high speed at low heat contradicts many of a low
-    // speed.
+    // There are no samples at mild and warm. The single sample with a high speed at low heat contradicts many samples
+    // with a low speed.
     learner.add(&[0.0, 100.0], 1.0).unwrap();
     for _ in 0..9 {
         learner.add(&[20.0, 0.0], 1.0).unwrap();

@@ -253,7 +253,7 @@ fn is_selected(model: &Model, rule: &Rule) -> bool {
 }
 
 /// Returns the outputs in an order in which each one follows those it reads. If there are cycles, returns these as the
-/// error: each is a list of outputs of which each one reads the next and the last one reads the first.
+/// error: in each cycle, every output reads the next one, and the last one reads the first.
 pub(crate) fn order(reads: &[Vec<OutputReference>]) -> Result<Vec<usize>, Vec<Vec<usize>>> {
     let (mut order, mut circles) = (Vec::new(), Vec::new());
     let mut placed = vec![false; reads.len()];
@@ -299,7 +299,7 @@ pub(crate) fn circles(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
         let rule = read.rule.map(|rule| {
             let mut place = format!(" in rule {}", rule + 1);
             let rule = model.rules.get(rule);
-            // The activation method evaluates all rules of the block.
+            // If the rule does not conclude the output, the activation method of its block makes the output depend on it.
             if rule.is_some_and(|rule| !concludes(rule, &model.outputs[by])) {
                 place += " of its block";
             }

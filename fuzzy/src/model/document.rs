@@ -102,8 +102,9 @@ pub struct VariableSpans {
     pub samples: Range<usize>,
     /// The value for inputs at which no rule fires; outputs only.
     pub default: Range<usize>,
-    /// Whether the range, or the terms, could not be parsed; a finding reports the error.
+    /// Whether the range could not be parsed; a finding reports the error.
     pub(crate) range_unread: bool,
+    /// Whether the terms could not be parsed; a finding reports the error.
     pub(crate) terms_unread: bool,
 }
 

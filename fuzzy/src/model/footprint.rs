@@ -10,10 +10,10 @@ pub(crate) type Footprint = (MembershipFunction, LowerFunction);
 /// The reason why a membership function has no footprint.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum NoFootprint {
-    /// This kind of membership function has none.
+    /// Footprints of this kind of membership function are not supported.
     Unsupported(String),
     /// The distance is so large that the lower membership function would be 0 everywhere, or would have another form.
-    /// Distances must be below this one.
+    /// The field is the limit, below which distances must be.
     TooLarge(f64),
 }
 
@@ -149,7 +149,7 @@ fn straight(corners: [f64; 4], by: f64, (low, high): (f64, f64)) -> Result<Footp
         };
         return Ok((upper, normal(lower)));
     }
-    // The flanks, of these lengths, meet at this height.
+    // The flanks have the lengths `rise` and `fall`, and meet at `height`.
     let (rise, fall) = (left_top + by - left, right - (right_top - by));
     let height = ((right - left) / (rise + fall)).min(1.0);
     if !(left < right && height > 0.0) {
@@ -340,7 +340,7 @@ mod tests {
             blurred(&spike, 0.1, RANGE, "x"),
             Err(NoFootprint::Unsupported("a `spike`".into()))
         );
-        // An edge at the end of the range stays.
+        // A vertical edge at the end of the range is not moved.
         let at_the_end = F::Triangle {
             left: 0.0,
             peak: 0.0,

@@ -149,10 +149,10 @@ pub enum NoRuleFires {
 
 /// A defuzzifier: the method that reduces an aggregated fuzzy set to a number.
 ///
-/// The three maxima methods treat degrees as equal if they differ by a relative difference of at most 1e-12. Two
-/// plateaus or peaks of nearly equal degree therefore both count; the section between two kinks is a plateau if its
-/// degrees are that close to the maximum; and a firing strength that close to the maximum degree of a term does not cut
-/// the term off. The mean is taken over all values on plateaus, or over the peaks if there is no plateau.
+/// The three maxima methods treat degrees as equal if their relative difference is at most 1e-12. Two plateaus or peaks
+/// of nearly equal degree therefore both count; the section between two kinks is a plateau if its degrees are that close
+/// to the maximum; and a firing strength that close to the maximum degree of a term does not cut the term off. The mean
+/// is taken over all values on plateaus, or over the peaks if there is no plateau.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Defuzzifier {
     /// The centre of gravity of the aggregated set.

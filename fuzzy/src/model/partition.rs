@@ -31,7 +31,7 @@ pub(crate) fn between_peaks(peaks: &[(&str, f64)]) -> Vec<Term> {
 }
 
 impl Variable {
-    /// Returns the peaks of its terms if they form a partition as made by [`Variable::partition_at`]: at least two
+    /// Returns the peaks of the terms if they form a partition as [`Variable::partition_at`] creates it: at least two
     /// terms of height 1, with increasing peaks inside the range. `None` for other terms.
     pub fn partition_peaks(&self) -> Option<Vec<f64>> {
         let peak = |term: &Term| match term.membership_function {

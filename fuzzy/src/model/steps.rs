@@ -53,7 +53,7 @@ impl Variable {
         self
     }
 
-    /// Returns the limits of its terms if they divide the range as [`Variable::steps`] does: at least two rectangles of
+    /// Returns the limits of the terms if they divide the range as [`Variable::steps`] does: at least two rectangles of
     /// height 1 from the lower end of the range to the upper one, each ending at the number before the next one begins.
     /// `None` for other terms.
     pub fn step_limits(&self) -> Option<Vec<f64>> {

@@ -170,7 +170,7 @@ impl Model {
     }
 
     /// Returns whether the value of an output is the middle of an interval: it has type-2 terms, or one of its rules
-    /// reads them. An output that reads only the value of another output has no interval from it.
+    /// reads them. An output that reads another output uses only its value, so this does not make it an interval.
     #[must_use]
     pub fn has_interval(&self, output: &Output) -> bool {
         let mut rules = self.rules.iter();
@@ -201,8 +201,8 @@ impl Model {
         }
     }
 
-    /// Returns the first rule with an activation method that reads a type-2 term. The selection of rules is not
-    /// monotone in their strengths, so it has no lower and upper bound.
+    /// Returns the first rule that reads a type-2 term and is subject to an activation method. The selection of rules is
+    /// not monotone in their strengths, so the strengths have no lower and upper bounds.
     pub(crate) fn selected_type2_rule(&self) -> Option<usize> {
         let mut rules = self.rules.iter();
         rules.position(|rule| {

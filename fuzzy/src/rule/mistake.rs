@@ -206,7 +206,8 @@ fn two_words(span: core::ops::Range<usize>, first: &str, second: &str) -> Diagno
     Diagnostic::error("rule-syntax", span, message).help(help)
 }
 
-/// Returns the input or the output, as the first argument requests, that has a term of a name.
+/// Returns the name of a variable that has a term. The first argument is `input` or `output`, the second is the name of
+/// the term.
 pub(crate) type Owner<'a> = &'a dyn Fn(&str, &str) -> Option<String>;
 
 /// Returns the input of the last condition of a text: `x` of `IF x IS low OR`.

@@ -66,8 +66,8 @@ mod tests {
     }
 
     proptest! {
-        /// Both functions are within one unit in the last place of the true value, so their results differ by at most
-        /// one representable number, or by two if they err in opposite directions.
+        /// The errors of both functions are below one unit in the last place, so their results are equal or adjacent
+        /// numbers.
         #[test]
         fn libm_agrees(x in prop_oneof![0.0..1.0, 0.0..40.0, 0.0..707.9]) {
             let x: f64 = x;

@@ -13,8 +13,8 @@ use super::{
 
 /// The outline of a shape, as far as an exact integral needs it.
 enum Outline {
-    /// Straight lines between corners `(x, degree)`, with non-decreasing x; beyond them it keeps the first and the last
-    /// degree.
+    /// Straight lines between corners `(x, degree)`, with non-decreasing x. Before the first and after the last corner,
+    /// the degree is constant.
     Straight(Vec<(f64, f64)>),
     /// Smooth between these positions, which are unordered, and close enough to each other that no flank is missed.
     /// Positions that are not finite are ignored.
@@ -151,8 +151,8 @@ impl MembershipFunction {
         }
     }
 
-    /// Returns the corners `(x, degree)` of a shape made of straight lines, with non-decreasing x; beyond them it keeps
-    /// the first and the last degree. `None` for a curved shape.
+    /// Returns the corners `(x, degree)` of a shape made of straight lines, with non-decreasing x. Before the first and
+    /// after the last corner, the degree is constant. `None` for a curved shape.
     pub fn corners(&self) -> Option<Vec<(f64, f64)>> {
         match self.outline() {
             Outline::Straight(corners) => Some(corners),

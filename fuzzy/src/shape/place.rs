@@ -45,8 +45,8 @@ impl MembershipFunction {
         }
     }
 
-    /// Returns whether it only rises or only falls over all values and is not constant, so that each degree has a
-    /// unique value.
+    /// Returns whether the degree only rises or only falls over all values and is not constant, so that each degree
+    /// determines a value.
     pub(crate) fn is_monotone(&self) -> bool {
         match self {
             MembershipFunction::Piecewise { points } => {

@@ -57,8 +57,7 @@ impl MembershipFunction {
             } => {
                 let power = pow(fabs((x - center) / width), 2.0 * slope);
                 let sum = 1.0 + power;
-                // Otherwise the quotient is undefined, at the middle and far away from it, and its
-                // limit is used.
+                // At the middle and far away from it, the quotient may be undefined; the slope is then 0.
                 let share = power / sum / sum;
                 if share > 0.0 && sum < f64::INFINITY {
                     -2.0 * slope * share / (x - center)

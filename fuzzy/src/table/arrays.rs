@@ -71,7 +71,7 @@ macro_rules! table_arrays {
             sets: FuzzySet,
             /// The terms of sets, one for each firing strength.
             set_terms: SetTerm,
-            /// The sections of the ranges of sets.
+            /// The sections into which the ranges of sets are divided.
             sections: Section,
             /// The strands: terms on sections.
             strands: Strand,

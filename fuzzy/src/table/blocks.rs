@@ -52,7 +52,7 @@ impl Method {
 }
 
 impl Block {
-    /// Creates a block of a range of programs.
+    /// Creates a block that consists of a range of programs.
     pub(crate) fn new(
         (and, or): (Conjunction, Disjunction),
         activation: Activation,

@@ -167,7 +167,7 @@ impl<'a> Chain<'a> {
         most as usize
     }
 
-    /// Verifies every index and size, as [`Table::check`] does, for a rule set with a number of inputs.
+    /// Verifies every index and size, as [`Table::check`] does, for a rule set with `inputs` inputs.
     ///
     /// # Errors
     /// The first array with an index out of bounds.

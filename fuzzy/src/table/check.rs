@@ -150,7 +150,7 @@ impl Table<'_> {
         Ok(())
     }
 
-    /// Verifies the layers of an output with a number of firing strengths.
+    /// Verifies the layers of an output that has `strengths` firing strengths.
     fn check_layers(&self, set: &LayeredSet, strengths: usize) -> Result<(), DamagedArray> {
         require(
             within(set.first_base, set.end_base, self.bases.len())
@@ -170,7 +170,7 @@ impl Table<'_> {
         Ok(())
     }
 
-    /// Verifies the set of an output with a number of firing strengths.
+    /// Verifies the set of an output that has `strengths` firing strengths.
     fn check_set(&self, set: &FuzzySet, strengths: usize) -> Result<(), DamagedArray> {
         let terms = set.end_term.saturating_sub(set.first_term) as usize;
         require(
@@ -281,7 +281,7 @@ impl Table<'_> {
         starts.get(..=intervals)
     }
 
-    /// Returns whether the indices of the literals of an input are below a number.
+    /// Returns whether the indices of the literals of an input are below `literals`.
     fn fits_literals(&self, input: &Input, literals: usize) -> bool {
         let first = u64::from(input.first_literal);
         let fits = |literal: u32| first + u64::from(literal) < literals as u64;

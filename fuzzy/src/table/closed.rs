@@ -262,8 +262,9 @@ impl Output {
         select_unpredictable(area > 0.0, value, f64::NAN)
     }
 
-    /// Returns the value of a Takagi-Sugeno output with a total weight; NaN if no rule fired or the value is not
-    /// finite. It is clamped to the range only if the author requests it, because the author chose the consequents.
+    /// Returns the value of a Takagi-Sugeno output; NaN if `total`, the sum of the weights, is 0 because no rule fired,
+    /// or if the value is not finite. It is clamped to the range only if the author requests it, because the author
+    /// chose the consequents.
     #[inline(always)]
     pub(crate) fn weighted(&self, value: f64, total: f64) -> f64 {
         let is_value = (total > 0.0) & (fabs(value) < f64::INFINITY);

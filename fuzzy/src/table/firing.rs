@@ -74,7 +74,8 @@ where
     (search, firing)
 }
 
-/// Sets all strengths to 0. Few elements are written inline, because a call of `memset` takes longer.
+/// Sets all strengths to 0. The first eight, if there are as many, are written inline, because a call of `memset` takes
+/// longer.
 #[inline(always)]
 fn clear<const L: usize>(strengths: &mut [[f64; L]]) {
     match strengths.split_first_chunk_mut::<8>() {

@@ -134,7 +134,7 @@ impl Flank {
     pub(crate) fn where_degree_is(&self, degree: f64) -> f64 {
         let [a, b, c, d] = self.parameters;
         let level = smaller(1.0, degree / self.height);
-        // The side of the shape's middle: left is -1, right is 1.
+        // The side of the shape's middle on which the flank is: -1 for left, 1 for right.
         let side = if self.rises() { -1.0 } else { 1.0 };
         let x = match self.kind {
             ShapeKind::PIECEWISE => {

@@ -39,7 +39,7 @@ pub struct Line {
     pub run: f64,
     /// The degree at the foot of the line.
     pub base: f64,
-    /// The difference between the degree at its top and that at its foot.
+    /// The difference between the degrees at the top and at the foot of the line.
     pub rise: f64,
     /// The index of the literal among those of its input; in a uniform table, its offset among the cells.
     pub literal: u32,

@@ -24,14 +24,14 @@ pub struct LayeredSet {
     pub end_layer: u32,
 }
 
-/// The largest firing strength of a list of terms: the larger of that of all but the last term, and that of the last
-/// term.
+/// The largest firing strength of a list of terms, computed as the larger one of the base of all terms but the last, and
+/// the firing strength of the last term.
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[repr(C)]
 pub struct Base {
-    /// The base of all terms but the last one: 0 if there is no other term (that base is 0), else the index in the set
-    /// plus 1.
+    /// The base of all terms but the last one: its index in the set plus 1, or 0 if there is no other term. In that case
+    /// the base is 0.
     pub others: u32,
     /// The index of the last term's firing strength among those of the output.
     pub strength: u32,
@@ -55,9 +55,9 @@ pub struct Base {
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(C)]
 pub struct Layers {
-    /// The lowest degrees.
+    /// For each layer, the smaller of the degrees at the ends of its part.
     pub low: [f64; 4],
-    /// The highest degrees.
+    /// For each layer, the larger of the degrees at the ends of its part.
     pub high: [f64; 4],
     /// The coefficients of the areas.
     pub area: [[f64; 4]; 2],

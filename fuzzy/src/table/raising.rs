@@ -99,7 +99,7 @@ where
     let strengths = strengths.get_mut(first as usize..of.end_strength as usize)?;
     strengths.fill([0.0]);
     let score = |strength: u32| {
-        // In a damaged table it may belong to a different output.
+        // In a damaged table the firing strength may belong to a different output.
         let index = strength.checked_sub(first)? as usize;
         *strengths.get_mut(index)? = [1.0];
         let mut value = [f64::NAN];

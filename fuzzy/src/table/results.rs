@@ -16,7 +16,7 @@ pub(crate) struct Results<const L: usize> {
     pub(crate) input_flags: InputFlags<L>,
 }
 
-/// Flags of the inputs of `L` rows. They are as wide as the values, so that a vector contains equally many.
+/// Flags of the inputs of `L` rows. A flag is as wide as a value, so that a vector contains as many flags as values.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct InputFlags<const L: usize> {
     /// 1 if an input was outside its range, else 0.
@@ -25,7 +25,8 @@ pub(crate) struct InputFlags<const L: usize> {
     pub(crate) infinite: [u64; L],
 }
 
-/// Returns the number of a rule, `2^52 + index`. It is as wide as a strength, so that a vector contains equally many.
+/// Returns the number of a rule, `2^52 + index`. It is as wide as a firing strength, so that a vector contains as many
+/// of them.
 #[inline(always)]
 pub(crate) fn number_of(rule: u32) -> f64 {
     f64::from_bits(0x4330 << 48 | u64::from(rule))
@@ -49,7 +50,7 @@ impl<const L: usize> Results<L> {
         },
     };
 
-    /// Returns the value of a row, from its rules or the default if no rule fires; NaN if it has none.
+    /// Returns the value of a row: that of its rules, or the default value if no rule fired; NaN if there is none.
     #[inline(always)]
     pub(crate) fn value(&self, row: usize) -> f64 {
         let value = self.values[row];

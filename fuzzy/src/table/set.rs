@@ -203,7 +203,7 @@ impl<'t> SetArrays<'t> {
         &self.flanks[term.first_flank as usize..term.end_flank as usize]
     }
 
-    /// Returns the area and moment of a flank that is cut or scaled, as if no other were present.
+    /// Returns the area and moment of a flank that is cut or scaled, as if it were the only one.
     fn alone(&self, flank: &Flank, strength: f64) -> (f64, f64) {
         if self.scales {
             (strength * flank.area, strength * flank.moment)

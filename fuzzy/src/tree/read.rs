@@ -98,7 +98,7 @@ impl<'a> Fields<'a> {
         entries.filter(|entry| self.unknown.contains(&entry.key))
     }
 
-    /// Removes the findings about unknown keys, for a single finding in their place.
+    /// Removes the findings about unknown keys of this mapping, so that the caller can report a single finding instead.
     pub fn withdraw(&self, findings: &mut Vec<Diagnostic>) {
         findings.retain(|finding| {
             let is_here = |entry: &Entry<'_>| entry.key_span == finding.span;
@@ -107,7 +107,8 @@ impl<'a> Fields<'a> {
     }
 
     /// Returns the value of a required key, and reports a finding if it is missing. If the mapping has a single unknown
-    /// key that resembles no other, the missing one was probably meant, and the finding about the unknown key says so.
+    /// key that resembles no known key, the missing one was probably meant. In this case, the finding about the unknown
+    /// key suggests it, and there is no second finding.
     pub fn require(
         &self,
         key: &str,
@@ -119,7 +120,7 @@ impl<'a> Fields<'a> {
             return found;
         }
         let is_unlike = |finding: &&mut Diagnostic| {
-            // After the first missing key, the help is another one.
+            // Once the finding suggests a missing key, its help no longer starts like this.
             let is_open = finding
                 .help
                 .as_deref()
@@ -252,7 +253,7 @@ impl Node {
         Some(entries)
     }
 
-    /// Reads a list; `help` is the suggestion for other values.
+    /// Reads a list; `help` is the suggestion for a value that is not a list.
     pub fn items(&self, what: &str, help: &str, findings: &mut Vec<Diagnostic>) -> Option<&[Node]> {
         match &self.value {
             Value::List(items) => Some(items),
@@ -312,8 +313,8 @@ impl Node {
         }
     }
 
-    /// Reads text; `help` is the suggestion for other values. Numbers and booleans are returned as written, because
-    /// names may look like them.
+    /// Reads text; `help` is the suggestion for null, lists and mappings. Numbers and booleans are returned as written,
+    /// because names may look like them.
     pub fn words(&self, what: &str, help: &str, findings: &mut Vec<Diagnostic>) -> Option<&Scalar> {
         match &self.value {
             Value::Scalar(scalar) if !scalar.is_null() => Some(scalar),
@@ -552,7 +553,7 @@ fn other_notation(text: &str) -> Option<u64> {
     })
 }
 
-/// Units that are easily confused, and the larger one.
+/// Units that are easily confused: each with the unit that is 1000 times as large.
 const MILLI: [(&str, &str); 4] = [("ms", "s"), ("mm", "m"), ("mV", "V"), ("mA", "A")];
 
 impl Scalar {

@@ -14,7 +14,7 @@ const EQUAL: f64 = 1e-12;
 /// The number of steps over the range in which curved membership functions are compared.
 const STEPS: u32 = 400;
 
-/// The number of steps of the search for the largest difference between two of these.
+/// The number of steps of the search for the largest difference between two values that were compared.
 const SEARCH: usize = 60;
 
 impl Validator<'_> {
@@ -47,7 +47,8 @@ impl Validator<'_> {
         }
     }
 
-    /// Requires that an output with lower membership functions has fuzzy sets with an area in both.
+    /// Requires that an output with lower membership functions is not weighted, and that each of them is a fuzzy set. With
+    /// a singleton, both membership functions of the term must be singletons at the same position.
     pub(super) fn bounds_are_sets(&mut self, what: &str, output: &Output, spans: &VariableSpans) {
         let no_spans = TermSpans::default();
         for (i, term) in output.variable.terms.iter().enumerate() {
@@ -172,7 +173,7 @@ fn above(term: &Term, low: f64, high: f64) -> Option<(f64, f64, f64)> {
     let functions = [&lower.membership_function, &term.membership_function];
     let mut points: Vec<f64> = functions.iter().flat_map(|it| it.cuts()).collect();
     points.extend([low, high]);
-    // The neighbours are the limits at a step.
+    // At a step, the degrees of the neighbouring numbers are the limits from both sides.
     let near: Vec<f64> = points
         .iter()
         .flat_map(|x| [x.next_down(), x.next_up()])

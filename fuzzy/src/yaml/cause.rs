@@ -1,12 +1,12 @@
-//! Reasons why a text is not YAML: the format of another program, a Markdown fence, comments of another language, or spaces
-//! that YAML does not allow.
+//! Reasons why a text is not YAML: an unresolved merge conflict, the format of another program, a Markdown fence,
+//! comments of another language, spaces that YAML does not allow, or a missing colon or space after a colon.
 
 use alloc::{format, string::String, vec::Vec};
 
 use crate::diagnostic::Diagnostic;
 
-/// Returns a finding if a text is in another format, or is surrounded by or contains characters that YAML does not
-/// allow. Call this only for texts that could not be parsed.
+/// Returns a finding if a text has an unresolved merge conflict, is in another format, is indented with spaces that YAML
+/// does not allow, or has comments that begin with `//`. Call this only for texts that could not be parsed.
 pub(super) fn cause(text: &str) -> Option<Diagnostic> {
     let lines = lines(text);
     let syntax = |at: usize, length: usize, message: &str, help: &str| {
@@ -50,7 +50,7 @@ pub(super) fn cause(text: &str) -> Option<Diagnostic> {
     )
 }
 
-/// Returns the start of each line behind its indentation, and the line without white space around it.
+/// Returns the start of each line after its indentation, and the line without white space around it.
 fn lines(text: &str) -> Vec<(usize, &str)> {
     let mut at = 0;
     let lines = text.split_inclusive('\n').map(|line| {
@@ -140,8 +140,8 @@ fn is_table(first: &str, second: Option<&str>) -> bool {
     })
 }
 
-/// Explains a syntax error by the line before it, or by its own line: a key without a space after its colon, or
-/// without a colon.
+/// Explains a syntax error by a key without a space after its colon, or without a colon, in the same line or in the
+/// line before it.
 pub(super) fn line(text: &str, finding: &Diagnostic) -> Option<Diagnostic> {
     let before = text.get(..finding.span.start)?;
     let start = before.rfind('\n').map_or(0, |at| at + 1);
@@ -181,7 +181,7 @@ pub(super) fn line(text: &str, finding: &Diagnostic) -> Option<Diagnostic> {
         return None;
     }
     let at = at + line.len() - content.len();
-    // Without words of the text, which may be of any file.
+    // The message does not quote the text, which may be any file.
     let message = String::from("a space is missing after a colon");
     let finding = Diagnostic::error("yaml-syntax", at..at + content.len(), message);
     Some(finding.help("write `key: value`"))
@@ -231,7 +231,7 @@ fn key_without_colon(text: &str, start: usize) -> Option<Diagnostic> {
     })
 }
 
-/// Adds to the help of a rule that ends too early that the rest of its line is a comment.
+/// If a comment follows the position of a syntax error in a rule, adds to the help that `#` begins a comment.
 pub(super) fn comment(text: &str, finding: &mut Diagnostic) {
     let rest = text.get(finding.span.end..).unwrap_or("");
     let rest = rest.lines().next().unwrap_or("").trim_start();

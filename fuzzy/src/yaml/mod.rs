@@ -131,8 +131,9 @@ struct OpenCollection {
     end: usize,
     anchor: usize,
     content: Content,
-    /// The number of values inside, and their nesting depth, for the limits on aliases.
+    /// The number of values in it, as [`MOST_FROM_ALIASES`] counts them.
     values: usize,
+    /// The nesting depth of the values in it.
     depth: usize,
 }
 
@@ -408,8 +409,8 @@ fn blank(rest: &str, style: ScalarStyle) -> usize {
     rest.len() - left.len()
 }
 
-/// Returns whether there is a backslash at the end of a line in double quotes here; both are removed, with the
-/// following indentation.
+/// Returns whether there is an escaped line break in double quotes here: a backslash at the end of a line. YAML removes
+/// the backslash, the line break and the following indentation.
 fn is_escaped_break(rest: &str, style: ScalarStyle) -> bool {
     style == ScalarStyle::DoubleQuoted && (rest.starts_with("\\\n") || rest.starts_with("\\\r\n"))
 }

@@ -11,7 +11,7 @@ fn scalar_of(node: &Node) -> &Scalar {
     }
 }
 
-/// All styles of writing a rule, with the expected positions of its words.
+/// Covers all styles of writing a rule, with the expected positions of its words.
 #[test]
 fn positions_in_a_scalar_are_found_in_every_style() {
     for text in [
@@ -109,7 +109,7 @@ fn aliases_have_the_value_of_their_anchor() {
     assert_eq!(entries[0].1, entries[1].1);
 }
 
-/// Any tree, without positions.
+/// Generates trees without positions.
 fn any_tree() -> impl Strategy<Value = Node> {
     let leaf = prop_oneof![
         any::<f64>().prop_map(Node::number),

@@ -1,4 +1,4 @@
-//! The body of `flagred_tests::fuzzing::other_programs`.
+//! Passes the input to `flagred_tests::fuzzing::other_programs`.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| flagred_tests::fuzzing::other_programs(bytes));

@@ -1,4 +1,4 @@
-//! The body of `flagred_tests::fuzzing::profile`.
+//! Passes the input to `flagred_tests::fuzzing::profile`.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| flagred_tests::fuzzing::profile(bytes));

@@ -79,7 +79,7 @@ fn is_read_back(flight: &Flight) {
             known.map(|known| known.map(f64::to_bits)).collect()
         };
         assert_eq!(bits(&again, same), bits(flight, row), "at {t_s} s");
-        // Where the state changes within a second, the two may ignore the change at different rows.
+        // If the state changes for less than a second, the log and the CSV may ignore the change at different rows.
         let in_air = again.is_in_air(t_s);
         let mut near = flight
             .commands

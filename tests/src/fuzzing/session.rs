@@ -31,8 +31,9 @@ const MESSAGES: [Message; 7] = [
     COMMAND_ACK,
 ];
 
-/// Encodes a packet of another sender in three bytes and a payload: the address and, above it, the delay in hundredths of a
-/// second; the kind of message (0 for raw bytes) and the MAVLink version; the length.
+/// Encodes a packet of another sender in three bytes and a payload. The first byte is the address plus [`ADDRESSES`] times
+/// the delay in hundredths of a second; the second is the kind of message (0 for raw bytes) with the MAVLink version; the
+/// third is the length.
 pub(super) fn encode(address: u8, wait: u8, kind: u8, payload: &[u8]) -> Vec<u8> {
     let mut bytes = vec![address + ADDRESSES * wait, kind, payload.len() as u8];
     bytes.extend(payload);

@@ -127,7 +127,7 @@ impl Balance {
         }
     }
 
-    /// The finding at the end of the flight: a weak motor explains an imbalance.
+    /// The finding at the end of the flight: the weak motor if there is one, because it explains an imbalance.
     pub fn found(&self) -> Option<BalanceFinding> {
         self.found[1].or(self.found[0])
     }

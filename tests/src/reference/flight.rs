@@ -199,7 +199,7 @@ fn rests(air: &mut Option<AirborneState>, sample: &Sample, profile: &Profile) ->
         .get_or_insert(since_high_s <= TROUBLE_S || is_apart)
 }
 
-/// A time in the air. The state is reset before and after it.
+/// The state during a time in the air. It is reset before and after that time.
 struct AirborneState {
     take_off_s: f64,
     /// Values that ended before this time do not count in the long windows.
@@ -213,7 +213,7 @@ struct AirborneState {
     levels: Levels,
     episodes: Vec<RaisedEpisode>,
     balance: Balance,
-    /// After an alarm: the last time at which the motors did not work as before.
+    /// During and after an alarm: the last time, in seconds, at which the motors did not yet work as before the alarm.
     in_doubt_s: Option<f64>,
     /// Whether the motors began to idle after a high risk; `None` while they do not idle.
     fell: Option<bool>,

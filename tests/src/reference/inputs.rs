@@ -198,7 +198,7 @@ fn of_weights(statistic: &Statistic, inside: &[(f64, &Observation)]) -> f64 {
     }
 }
 
-/// The mean of the values of a slot: the age of its middle, its weight, its value.
+/// The age of the middle of a slot, the weight of the slot, and the mean of its values.
 struct Slot {
     t_s: f64,
     weight: f64,

@@ -11,8 +11,8 @@ use fuzzy::model::Defuzzifier;
 
 use super::{operators::ROUNDING, rules::Set};
 
-/// The value of a set; `None` if it is 0 everywhere; NaN if rounding decides, because the degree of a peak is at the tolerance
-/// within which it counts as the highest.
+/// The value of a set; `None` if the set is 0 everywhere. NaN if the value depends on rounding: if the degree of a peak
+/// differs from the highest degree by just the tolerance within which it counts as highest.
 pub fn defuzzify(set: &Set<'_>) -> Option<f64> {
     let pieces = pieces(set);
     if let Defuzzifier::Centroid | Defuzzifier::Bisector = set.defuzzifier {
@@ -44,7 +44,7 @@ const GRID: u32 = 48;
 /// An interval on which the set is smooth.
 type Piece = (f64, f64);
 
-/// Positions from just inside the beginning of a piece, by a share of its width, to just inside its end.
+/// Evenly spaced positions in a piece. The first and the last are inside its ends by the share `inside` of its width.
 fn grid((from, to): Piece, inside: f64) -> impl Iterator<Item = f64> {
     let rounding = 4.0 * f64::EPSILON * from.abs().max(to.abs());
     let inside = (inside * (to - from)).max(rounding).min(0.1 * (to - from));

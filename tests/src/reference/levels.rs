@@ -20,10 +20,10 @@ pub struct Moment {
     pub sinks: bool,
 }
 
-/// An episode with a level above GOOD.
+/// A period with a level above GOOD.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RaisedEpisode {
-    /// The worst level of the episode.
+    /// The worst level of the period.
     pub level: Level,
     /// Time since which the first raised level was reached.
     pub from_s: f64,
@@ -40,7 +40,7 @@ fn reached(threshold: &Threshold, now: &Moment) -> bool {
     over(now.risk, threshold.risk_pct) || over(now.elevated, threshold.elevated_risk_pct)
 }
 
-/// The level of one flight, and its episodes so far.
+/// The level of one flight, and its periods above GOOD so far.
 #[derive(Debug, Clone)]
 pub struct Levels {
     /// The current level.
@@ -117,7 +117,7 @@ impl Levels {
         }
     }
 
-    /// Ends the flight, because the vehicle landed or its state became unknown, and returns the episodes.
+    /// Ends the flight, because the vehicle landed or its state became unknown, and returns the periods above GOOD.
     pub fn end(&mut self, settings: &VerdictSettings, landed_s: Option<f64>) -> Vec<RaisedEpisode> {
         let ended = std::mem::take(self);
         let mut all = ended.all;

@@ -388,7 +388,8 @@ fn place(term: &Term, degree: f64, variable: &Variable) -> f64 {
     let degree = degree.min(of(left).max(of(right)));
     for _ in 0..200 {
         let middle = 0.5 * (left + right);
-        // On a plateau, the end towards the slope: a rising term has a degree first from the left, a falling one last.
+        // If the term has the degree on a plateau, this finds the plateau's end next to the slope: the left end of a rising
+        // term, the right end of a falling one.
         if (of(middle) >= degree) == rises {
             right = middle;
         } else {

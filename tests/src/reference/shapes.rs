@@ -69,7 +69,7 @@ pub(super) fn parameters(shape: &MembershipFunction) -> Vec<f64> {
 pub(super) fn membership<T: Number>(shape: &MembershipFunction, x: T) -> T {
     let (at, n) = (x.value(), T::of);
     let (zero, one, two) = (n(0.0), n(1.0), n(2.0));
-    // 1 / (1 + e^-t), without cancellation in its slope where it is near 1.
+    // 1 / (1 + e^-t). Where it is near 1, this form avoids cancellation in its slope.
     let sigmoid = |inflection: f64, slope: f64| {
         let t = n(slope) * (x - n(inflection));
         if t.value() > 0.0 {

@@ -20,5 +20,5 @@ pub use search::tune;
 pub use shares::{Share, risks_pct, shares, with_shares};
 pub use votes::Votes;
 
-/// An error of reading or writing files.
+/// An error while reading or writing files.
 pub type Failure = Box<dyn std::error::Error + Send + Sync>;

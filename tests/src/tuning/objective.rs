@@ -71,7 +71,7 @@ pub struct FalseAlarmSet {
     pub holds: fn(&Row) -> bool,
     /// The highest risk without a penalty, in %.
     pub above_pct: f64,
-    /// The penalty for an average of 1 % above it.
+    /// The penalty if the risks exceed `above_pct` by 1 % on average.
     cost: f64,
 }
 

@@ -15,7 +15,8 @@ pub struct Share {
     pub followed: usize,
 }
 
-/// The risk at each row in %, from the rule set of the fold of its vehicle, which was tuned without it.
+/// The risk at each row in %. Each vehicle belongs to a fold, and its risks come from the rule set that was tuned without
+/// this fold.
 ///
 /// # Errors
 ///

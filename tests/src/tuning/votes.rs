@@ -95,8 +95,9 @@ impl Input {
         self.votes.iter().flatten().any(|vote| vote.weight < 1.0)
     }
 
-    /// Whether the peaks rise, a vote counts, and the risk never falls as the input rises, whatever the other votes are: from
-    /// term to term a vote does not add less to the upward part, and does not take less from the downward part.
+    /// Whether the peaks rise, a vote counts, and the risk never falls as the input rises, whatever the other votes are. For
+    /// this, from each term to the next, the pull of the vote towards the highest consequent must not decrease, and its pull
+    /// towards the lowest consequent must not increase.
     pub(super) fn is_sound(&self, consequents: &[f64]) -> bool {
         let low = consequents.iter().copied().fold(f64::INFINITY, f64::min);
         let high = consequents

@@ -42,7 +42,7 @@ impl StandIn {
         }
     }
 
-    /// Moves its motors to other outputs, starting at this one (counted from 1).
+    /// Moves the motors of the vehicle to consecutive outputs from `first_output` on (counted from 1).
     pub fn remap(&mut self, first_output: usize) {
         self.shift = first_output - 1;
         for (name, _) in &mut self.parameters {

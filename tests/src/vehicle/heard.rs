@@ -10,7 +10,7 @@ use flagred_flightlog::mavlink::dialect::MavMessage;
 /// The messages of the other side.
 #[derive(Debug, Default)]
 pub struct Inbox {
-    /// Its messages, each with its arrival time, system and component.
+    /// The messages, each with its arrival time, system and component.
     pub messages: Vec<(Instant, u8, u8, MavMessage)>,
 }
 

@@ -13,7 +13,7 @@ use flagred::{board::Factors, verdict::Level};
 use flagred_flightlog::{Flight, ardupilot_frames};
 use flagred_tests::Folder;
 
-/// The maximum instructions of a call, of the 10,000 of SCR_VM_I_COUNT.
+/// The maximum number of instructions per call. ArduPilot allows 10,000 (SCR_VM_I_COUNT).
 const BUDGET: f64 = 8_000.0;
 /// The maximum numbers of local variables and upvalues of a function. ArduPilot's limits are 100 and 127, Lua's own 200 and 255.
 const LIMITS: [(&str, &str, &str); 2] = [
@@ -90,9 +90,11 @@ fn autopilot() -> Command {
     Command::new(binary)
 }
 
-/// A vehicle: the range of its motors in us, the effective range, and its frame, with the factors of its motors.
+/// A vehicle.
 pub(super) struct Vehicle {
+    /// The range of the motors in us.
     pub(super) pwm: (f64, f64),
+    /// The effective range, as parts of the range.
     pub(super) spin: (f64, f64),
     /// FRAME_CLASS and FRAME_TYPE.
     pub(super) frame: (i64, i64),
@@ -180,10 +182,10 @@ pub(super) struct Run {
     pub(super) values: usize,
     /// The reason why the autopilot could not be armed.
     pub(super) blocks: Option<String>,
-    /// The maximum instructions of a call at the start, of other calls, and their mean.
+    /// Instructions of a call: the maximum at the start, the maximum in flight, and the mean in flight.
     pub(super) instructions: [f64; 3],
-    /// The size of a pointer in bytes; the bytes in use without the script, with it after a collection, and at most at the start
-    /// and in flight.
+    /// The size of a pointer in bytes; then the bytes in use before the script, with the script after a garbage collection, at
+    /// the peak at the start, and at the peak in flight.
     pub(super) heap: [u64; 5],
 }
 

@@ -251,7 +251,7 @@ fn a_damaged_table_is_refused_or_evaluates_in_c() {
     let shipped = shipped.map(|((name, _), profile)| (name, profile));
     for (name, profile) in of_every_kind.chain(shipped) {
         let (mut command, _folder) = program("tests/c/damage.c", name, (profile, name));
-        // `scripts/check-c` tries many more, with sanitizers.
+        // `scripts/check-c` tries many more damaged plans, with sanitizers.
         let output = command.args(["1000", "16"]).output().unwrap();
         assert!(output.status.success(), "{name}: {output:?}");
         let text = String::from_utf8(output.stdout).unwrap();

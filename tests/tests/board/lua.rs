@@ -448,7 +448,8 @@ fn every_signal_and_statistic_is_the_same_in_the_script() {
     );
 }
 
-/// The battery level is known after a minute, and the ratio with it is unknown while it is below 80 %.
+/// The battery level is unknown in the first minute, so values are assumed. Once the level falls below 80 %, the ratio is
+/// unknown.
 #[test]
 fn signals_of_two_and_missing_ones_are_the_same_in_the_script() {
     let folder = Folder::new();
@@ -483,8 +484,8 @@ fn signals_of_two_and_missing_ones_are_the_same_in_the_script() {
     );
 }
 
-/// The rules of the paper for `strain`, which `risk` reads, partly through `trouble`; with minimum and maximum over
-/// partitions, and with sums of products.
+/// The rules of the paper conclude `strain`, which `risk` reads, partly through `trouble`: once with minimum and maximum over
+/// partitions, and once with sums of products.
 #[test]
 fn the_script_evaluates_outputs_that_read_other_outputs() {
     let folder = Folder::new();

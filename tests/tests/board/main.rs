@@ -1,5 +1,5 @@
-//! On-board monitors have the bits of the monitor, with a plan in borrowed memory, with exported Rust and with exported C, over
-//! grids of inputs and over every flight.
+//! The results of on-board monitors are bit for bit those of the monitor: with a plan in borrowed memory, with exported Rust
+//! and with exported C, over grids of inputs and over every flight.
 
 mod autopilot;
 mod c;
@@ -182,7 +182,7 @@ fn plans_agree_with_the_monitor_on_every_flight() {
     }
 }
 
-/// A strength with an index below the strengths of its output raises nothing, and does not cause a panic.
+/// A rule whose strength has a lower index than the strengths of its output raises nothing, and does not cause a panic.
 #[test]
 fn an_action_without_an_output_raises_nothing() {
     let estimator = estimator("flagred-paper");
@@ -336,7 +336,8 @@ fn a_profile_without_motors_is_the_same_in_borrowed_memory_and_in_c() {
     );
 }
 
-/// Asserts that a plan and its export to C have the bits of the monitor; returns the kinds of findings.
+/// Asserts that the results of a plan and of its export to C are bit for bit those of the monitor. Returns the kinds of
+/// findings.
 fn same_lent_and_in_c((estimator, file): (Estimator, String)) -> BTreeSet<String> {
     let signals = estimator.profile().signals();
     let plan = estimator.plan().unwrap();

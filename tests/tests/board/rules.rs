@@ -1,4 +1,4 @@
-//! Rule sets without a profile, in borrowed memory and exported to Rust and C: their outcomes have the bits of the engine.
+//! Rule sets without a profile, in borrowed memory and exported to Rust and C: the outcomes are bit for bit those of the engine.
 
 use std::path::{Path, PathBuf};
 
@@ -105,7 +105,7 @@ fn by_the_engine(engine: &Engine, points: &[Vec<f64>]) -> Vec<String> {
     let (mut scratch, outputs) = (engine.scratch(), engine.output_names().len());
     let outcomes = points.iter().map(|point| {
         let mut outcomes = vec![Outcome::default(); outputs];
-        // An output without a required value is an error of the engine, and a state here.
+        // If a required output has no value, the engine returns an error; here only the states of the outcomes are compared.
         let _ = engine.evaluate_with(&mut scratch, point, &mut outcomes);
         told(&outcomes)
     });

@@ -81,7 +81,7 @@ fn interval_terms(rng: &mut Rng) -> Vec<Term> {
     (0..3).map(term).collect()
 }
 
-/// A random interval type-2 rule set, and the same for PyIT2FLS with the intervals of some points.
+/// A random interval type-2 rule set as JSON for `pyit2fls_type2_peer.py`, with the engine's intervals at some points.
 fn interval_rule_set(seed: u64) -> String {
     let rng = &mut Rng::with_seed(seed);
     let [a, b, y] = [(); 3].map(|()| interval_terms(rng));
@@ -119,7 +119,7 @@ fn interval_rule_set(seed: u64) -> String {
     let engine = Engine::new(&model(&text)).unwrap();
     let points: Vec<[f64; 4]> = (0..5)
         .map(|_| {
-            // Where a lower firing strength is above 0.
+            // Near the peaks of terms, so that a lower firing strength is above 0.
             let [x, z] = [&a, &b].map(|terms| {
                 let peak = terms[rng.usize(0..3)][0][1];
                 (peak + 0.4 * (rng.f64() - 0.5)).clamp(0.0, 10.0)

@@ -1,5 +1,5 @@
 /**
- * The state of the flight room in its address. A link can contain it, except for the logs, which stay on the
+ * The state of the flight room in its address. A link can contain everything except the logs, which stay on the
  * user's machine.
  */
 

@@ -26,7 +26,10 @@ export interface Log {
   file: File;
 }
 
-/** The name of a shipped profile, or a text and its file name; and a rule set to use instead of the one it names. */
+/**
+ * The source of a profile: the name of a shipped one, or a file name with `text`. `rules` replaces the rule set that
+ * the profile names.
+ */
 export interface ProfileSource {
   name: string;
   text?: string;
@@ -120,7 +123,7 @@ export function assessLog(
   return { brief: assessment.brief(), stretch: assessment.stretch, signals: assessment.signals() };
 }
 
-/** The parts of the report in their order; the signals are the chosen ones, below the risk. */
+/** The parts of the report in their order; the charts of the chosen signals are below the risk. */
 const SHOWN: readonly Part[] = PARTS.filter((part) => part !== 'signals').flatMap((part) => (part === 'risk' ? ['risk', 'signals'] : [part]));
 
 /**

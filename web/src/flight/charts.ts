@@ -1,4 +1,4 @@
-/** The charts of a report: the values of their curves at a time. The curves themselves are the data. */
+/** The charts of a report: the values of their curves at a time. The data are parsed from the curves themselves. */
 
 import { h } from '../dom';
 
@@ -6,8 +6,9 @@ export interface Chart {
   box: HTMLElement;
   area: HTMLElement;
   plot: SVGSVGElement;
-  /** The time at the left edge of the chart, and the length of the stretch that was drawn. */
+  /** The time at the left edge of the chart, in seconds. */
   start_s: number;
+  /** The length of the stretch that was drawn, in seconds. */
   length_s: number;
   /** The index of the input of the rules that the chart shows. */
   input: number | undefined;
@@ -23,7 +24,7 @@ export interface Chart {
   events: { x_s: number; text: string }[];
 }
 
-/** Seconds since the start, and values; NaN where the line is interrupted. */
+/** The points of a curve: seconds since the start, and values; NaN where the line is interrupted. */
 interface Curve {
   x_s: number[];
   values: number[];

@@ -76,7 +76,10 @@ interface Row {
   update(isCurrent: boolean): void;
 }
 
-/** Creates the table; only changed entries are drawn again. It is hidden for a single flight that is shown. */
+/**
+ * Creates the table; only changed entries are drawn again. It is hidden while it contains only one flight, which is
+ * shown.
+ */
 export function logList(actions: Actions): LogList {
   const rows = new Map<Entry, Row>();
   let shown: { entries: readonly Entry[]; current: Entry | undefined } = { entries: [], current: undefined };

@@ -27,7 +27,7 @@ export function picker(choose: (names: string[]) => void): Picker {
       chosen = box.checked ? [...chosen, name] : chosen.filter((other) => other !== name);
       choose(chosen);
     });
-    // The column of a flight CSV has the name of the signal.
+    // A source that contains the name of the signal, such as the column of a flight CSV, is not shown.
     const words = [source.includes(name) ? '' : source, unit].filter(Boolean).join(', ');
     return h('label', {}, box, h('span', {}, name), h('span', { class: 'soft' }, words));
   };

@@ -32,9 +32,11 @@ export function open(root: HTMLElement, app: App): Room {
   let base: ProfileSource = { name: begun.profile ?? 'flagred' };
   let changes: VerdictChanges = begun.changes;
   let facts: ProfileFacts | undefined;
-  /** The whole stretch, the stretch that is shown, and the stretch for which the charts were drawn, in seconds. */
+  /** The stretch of the whole flight. */
   let whole: Stretch = { start_s: 0, end_s: 1 };
+  /** The stretch that is shown. */
   let shown = begun.stretch;
+  /** The stretch for which the charts were drawn. */
   let drawn: Stretch = whole;
   let cursor_s = begun.t_s ?? NaN;
   let signals = begun.signals;

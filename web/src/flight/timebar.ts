@@ -40,7 +40,7 @@ export function timeBar(actions: Actions): TimeBar {
     made.addEventListener('click', act);
     return made;
   };
-  /** Zooms around the cursor, which keeps its position. */
+  /** Zooms around the cursor, which stays at its position on the screen. */
   const about = (scale: number) => actions.zoom(share - share * scale, share + (1 - share) * scale);
   const closer = button('+', 'Zoom in', () => about(0.5));
   const farther = button('−', 'Zoom out', () => about(2));

@@ -4,7 +4,7 @@ export interface Track {
   here: SVGPathElement;
   output: HTMLElement;
   start_s: number;
-  /** Seconds since the start, and metres to the right and down. */
+  /** For each point: seconds since the start, metres to the right, metres down. */
   points: [number, number, number][];
 }
 

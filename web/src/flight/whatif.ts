@@ -67,8 +67,8 @@ function put(changes: VerdictChanges, place: Place, value: number): void {
 }
 
 /**
- * Keeps the threshold that holds a level at or below the one that raises it: the one that was
- * moved moves the other one along if necessary.
+ * Keeps the threshold that holds a level at or below the threshold that raises it. If one is moved past the other,
+ * the other is moved along.
  */
 function keepOrder(changes: VerdictChanges, base: VerdictSettings, moved: Place): void {
   if (moved.length !== 3) return;

@@ -110,7 +110,7 @@ export const rulesChangeRule = (_tell: Tell, text: string, rule: number, to: str
 export const rulesRemoveRule = (_tell: Tell, text: string, rule: number): Edit[] => of(text).open.removeRule(rule);
 
 export const rulesMap = (_tell: Tell, text: string, view: View): Cells => compiled(text).map(view);
-/** Why the outputs at a point are what they are: all rules, and the degree of each proposition. */
+/** The explanation of the outputs at a point: all rules, and the degree of each proposition. */
 export interface Reasons {
   explanation: Explanation;
   viewed: ViewedRules;

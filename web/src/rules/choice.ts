@@ -3,8 +3,9 @@
 import type { About, View } from 'flagred';
 import type { Kind } from './map';
 
-/** The number of points along an axis of the map, and of the curve of one input. */
+/** The number of points along an axis of the map. */
 const POINTS = 101;
+/** The number of points of the curve of a rule set with one input. */
 const CURVE = 401;
 
 export const KINDS: [Kind, string][] = [['map', 'Map'], ['surface', 'Surface'], ['rules', 'Strongest rule']];

@@ -114,7 +114,7 @@ export function editor(place: HTMLElement, text: string, readOnly: boolean, serv
     return {
       from: word?.from ?? context.pos,
       validFor: /^[\w-]*$/,
-      // In the order of the service, in which likely completions are first.
+      // The order is that of the service, which puts likely completions first.
       options: found.map(({ label, text, kind, detail }, i) => ({
         label, apply: text, type: kinds[kind], boost: Math.max(99 - i, -99), ...(detail ? { detail } : {}),
       })),

@@ -32,18 +32,19 @@ export interface Frame {
   height: number;
 }
 
-/** The space for axes and the colours next to the map, in pixels. */
+/** The margins around the map for the axes and the colour scale, in pixels. */
 const LEFT = 54;
 const RIGHT = 58;
 const TOP = 28;
 const BOTTOM = 40;
 /** How far a key moves the point, as a share of the axis. */
 const KEY_STEP = 0.02;
-/** How far a surface turns, in degrees: by a key, and by a pixel of a drag. */
+/** The angle by which a key turns a surface, in degrees. */
 const KEY_TURN = 5;
+/** The angle by which a drag turns a surface, in degrees per pixel. */
 const PIXEL_TURN = 0.5;
 
-/** The explained point: `at` returns its value of an input, `move` changes it. */
+/** The explained point: `at` returns its value for an input, `move` changes that value. */
 export interface Point {
   at(input: number): number;
   move(input: number, value: number): void;
@@ -146,7 +147,7 @@ export function decisionMap(colours: Colours, point: Point): DecisionMap {
 
 export type Ink = Record<'ink' | 'soft' | 'rule' | 'paper' | 'accent', string>;
 
-/** The colours of the page. */
+/** The colours of the page, for drawing. */
 function inks(element: Element): Ink {
   const style = getComputedStyle(element);
   const of = (name: keyof Ink) => style.getPropertyValue(`--${name}`);
@@ -155,7 +156,7 @@ function inks(element: Element): Ink {
 
 const share = (value: number, low: number, high: number) => clamp((value - low) / (high - low), 0, 1);
 
-/** The cells as pixels in a top view: the second axis points up. */
+/** Draws the cells as pixels, seen from above; the second axis points up. */
 function pixels(shown: Shown, colours: Colours): ImageData {
   const { cells, output, kind, view } = shown;
   const points = view.points;
@@ -191,7 +192,7 @@ function flat(pen: CanvasRenderingContext2D, small: HTMLCanvasElement, frame: Fr
   if (x && y) cross(pen, frame, share(shown.point[x.input]!, x.low, x.high), share(shown.point[y.input]!, y.low, y.high), ink);
 }
 
-/** Draws the area where nothing is known. */
+/** Hatches the area in which nothing is known. */
 function hatch(pen: CanvasRenderingContext2D, frame: Frame, ink: Ink): void {
   pen.save();
   pen.beginPath();
@@ -271,7 +272,7 @@ function axes(pen: CanvasRenderingContext2D, frame: Frame, shown: Shown, ink: In
 
 export const titled = ({ name, unit }: Variable): string => (unit ? `${name} [${unit}]` : name);
 
-/** The title of an axis, which says so if the axis does not show the whole range. */
+/** The title of an axis, with the shown part if the axis does not show the whole range. */
 function part(variable: Variable, axis: { low: number; high: number } | undefined): string {
   const { low, high } = variable;
   if (!axis || (axis.low <= low && axis.high >= high)) return titled(variable);

@@ -33,8 +33,9 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
   const { engine } = app;
   const [colours, starts] = await Promise.all([engine.call('rulesColours'), engine.call('rulesStarts')]);
 
-  /** The meaning of the editor's text; for the map, the meaning of the last text without errors. */
+  /** The meaning of the editor's text. */
   let opened: Opened | undefined;
+  /** The last text without errors and its meaning, for the map. */
   let good: { text: string; about: About } | undefined;
   const choice: Choice = { output: '', x: '', y: '', kind: 'map', isWhole: false };
   /** The value of each input that was ever set or held, by name. */
@@ -222,7 +223,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
       const reasons = await engine.call('rulesExplain', now.text, at);
       explain(why, now.about, reasons.explanation);
       ruleViewer.show(reasons, at);
-      // Nobody can read text that changes faster, and its layout would take time from the map and the shapes.
+      // Nobody can read a text that changes faster, and its layout would take time that the map and the shapes need.
       await new Promise((done) => setTimeout(done, REASON_MS));
     }),
   );
@@ -362,7 +363,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
 
   function chosen(): void {
     const [x, y] = [selects.x.value, selects.y.value];
-    // The axis that already has this input takes the other one.
+    // If the other axis already shows this input, the two axes are swapped.
     Object.assign(choice, { output: selects.output.value, ...(x === y ? { x: choice.y, y: choice.x } : { x, y }) });
     choice.kind = selects.kind.value as Kind;
     choice.isWhole = whole.checked;

@@ -10,7 +10,7 @@ export interface Camera {
   tip: number;
 }
 
-/** As `flagred map --surface` draws it. */
+/** The direction of view of `flagred map --surface`. */
 export const FRONT: Camera = { turn: 35, tip: 28 };
 
 /** A camera that is turned further. It stays above the surface. */
@@ -19,7 +19,7 @@ export const turned = ({ turn, tip }: Camera, by: { turn?: number; tip?: number 
   tip: clamp(tip + (by.tip ?? 0), 5, 85),
 });
 
-/** The most points of the surface along an axis. */
+/** The maximum number of points of the surface along an axis. */
 const MOST = 41;
 /** The height of the box, as a share of its sides. */
 const HEIGHT = 0.7;
@@ -149,13 +149,13 @@ function box(
     line(place(near.x, at, 0), place(far.x, at, 0), place(far.x, at, 1));
     write(short(tick), place(near.x, at, 0), 9);
   }
-  // The numbers of the output stand at the outer edge of the wall that is farther left.
+  // The numbers of the output are at the outer edge of the wall that is farther left.
   const edges: [number, number][] = [[far.x, near.y], [near.x, far.y]];
   const [left] = edges.sort((a, b) => place(...a, 0)[0] - place(...b, 0)[0]);
   for (const tick of ticks(shown.output.low, shown.output.high, 4)) {
     const at = share(tick, shown.output.low, shown.output.high);
     line(place(far.x, near.y, at), place(far.x, far.y, at), place(near.x, far.y, at));
-    // Numbers at the floor would overlap those of an input.
+    // Numbers near the floor would overlap those of an input.
     if (at < 0.02) continue;
     const [from, top] = place(...left!, at);
     pen.textAlign = 'right';

@@ -1,4 +1,4 @@
-/** The rule viewer: a row for each rule with its terms, how far each holds at the point, and the result. */
+/** The rule viewer: a row for each rule with its terms, their degrees at the point, and the result. */
 
 import type { DrawnVariable, ViewedRules } from 'flagred';
 import { fill, h } from '../dom';
@@ -6,13 +6,13 @@ import { s, set } from '../svg';
 import type { Reasons } from './calls';
 import { clamp, short, told } from './numbers';
 
-/** The picture of a term, in its own units. */
+/** The size of the picture of a term, in its own units. */
 const WIDTH = 100;
 const HEIGHT = 32;
 
 export interface Viewer {
   element: HTMLElement;
-  /** Shows the rules, and how far each proposition holds at a point. */
+  /** Shows the rules, and the degree of each proposition at a point. */
   show(reasons: Reasons, point: number[]): void;
 }
 
@@ -27,7 +27,7 @@ interface Cell {
   cut: SVGPathElement;
   line: SVGLineElement | undefined;
   degree: HTMLElement;
-  /** A key of what is drawn now, with which the cell is redrawn only after a change. */
+  /** A key of the current drawing. The cell is redrawn only if its key changes. */
   drawn: string;
 }
 

@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (variables, sentences) = read(&std::fs::read_to_string(format!("{folder}/{system}.fll"))?)?;
     let points = std::fs::read_to_string(format!("{folder}/{system}.points"))?;
     let mut rows = Vec::new();
-    // A number of points that takes these programs a moment, not minutes.
+    // Fewer points for many rules, because these programs would need minutes for all.
     for line in points
         .lines()
         .take(if sentences.len() > 100 { 64 } else { 1024 })
@@ -179,7 +179,7 @@ fn oxictl(
     let terms = shapes(output)?;
     let terms: Vec<&dyn MembershipFn<f64>> = terms.iter().map(|t| &**t).collect();
 
-    // The capacity is part of the type: one that fits each system.
+    // The maximum number of rules is part of the type, so each system gets a type of its own.
     macro_rules! with_room_for {
         ($rules:literal) => {{
             let mut engine = MamdaniEngine::<f64, $rules, 8>::new(TNorm::Min);

@@ -1,4 +1,5 @@
-//! With any plan, a monitor is refused or can process samples without end. Debug builds check bounds and overflow.
+//! Whatever a plan contains, `flagred_start` refuses it, or the monitor can process any number of samples. Debug
+//! builds also check bounds and overflow.
 #![allow(
     unsafe_code,
     clippy::unwrap_used,
@@ -77,7 +78,7 @@ impl Piece {
     fn damage(&self, random: &mut Random) {
         let Piece(start, bytes) = *self;
         let (at, number) = (4 * random.below(bytes / 4), random.number());
-        // SAFETY: within the piece; every bit pattern is a value of every item.
+        // SAFETY: the bytes are within the piece, and every bit pattern is valid for every item.
         unsafe {
             match bytes - at {
                 8.. if random.below(3) == 0 => start.add(at).cast::<f64>().write_unaligned(number),
@@ -169,7 +170,7 @@ macro_rules! copy {
                 &raw mut plan.propositions.count,
             ];
             let Arrays { kept, mut pieces } = arrays;
-            // Often, damage numbers at the front.
+            // The numbers at the front of the plan are listed several times, so that they are damaged often.
             for _ in 0..pieces.len() / 4 {
                 let words = 6 * size_of::<u32>();
                 pieces.push(Piece((&raw mut plan.rules.and).cast(), words));
@@ -258,7 +259,8 @@ fn settings(settings: &Settings) -> CSettings {
     }
 }
 
-/// Profiles whose plans use every array: uniform, dense and trie, programs, curves, hedges, Takagi-Sugeno.
+/// Profiles whose plans together use every array: uniform, dense and trie tables, programs, curves, hedges, and
+/// Takagi-Sugeno outputs.
 fn estimators() -> Vec<Estimator> {
     const INPUTS: &str = "inputs:\n  a: {range: [0, 1], terms: {low: {left_shoulder: [0.2, 0.6]}, high: {gaussian: {mean: 0.8, sd: 0.2}}}}\n  \
         b: {range: [0, 1], partition: [low, medium, high]}\n  c: {range: [0, 1], partition: [low, medium, high]}\n";
@@ -273,7 +275,7 @@ fn estimators() -> Vec<Estimator> {
     for outputs in [MAMDANI, SUGENO] {
         for rules in [DENSE, PROGRAMS] {
             let mut rules = format!("fuzzy: 1\nname: t\n{INPUTS}{outputs}rules:\n{rules}");
-            // A rule set with few rules uses no table.
+            // More rules are added, because a rule set with few rules uses no table.
             for (b, c) in ["low", "medium", "high"]
                 .iter()
                 .flat_map(|b| [(b, "low"), (b, "medium"), (b, "high")])

@@ -55,7 +55,7 @@ class Geometry(NamedTuple):
     """``declared``, ``inferred`` or ``assumed``."""
     source: str
     doubt: str | None
-    """The reason why the commands contradict it."""
+    """The reason why the commands contradict this geometry; None if they do not."""
 
 
 class Parameter(NamedTuple):
@@ -93,7 +93,7 @@ class Intervals(NamedTuple):
 
 
 class LeftOutCounts(NamedTuple):
-    """The numbers of items of a log beyond the limits; these are not kept."""
+    """The numbers of items of a log that were dropped because they exceed a limit."""
 
     texts: int
     modes: int
@@ -154,7 +154,7 @@ class Cause(NamedTuple):
 
 
 class Finding(NamedTuple):
-    """A time at a level: when, what, and its cause. ``str()`` is the text for a pilot."""
+    """A period at or above a level, with its cause; or a notice. ``str()`` is the text for a pilot."""
 
     severity: Literal["GOOD", "INFO", "WARN", "FAIL"]
     from_s: float
@@ -167,7 +167,7 @@ class Finding(NamedTuple):
     """``risk``, ``elevated_risk``, or the measure of a notice."""
     threshold_pct: float
     value_pct: float
-    """The worst value of the measure in that time."""
+    """The worst value of the measure in this period."""
     risk_low: float | None
     """The lower end of the interval of the highest risk in %; None if it is unknown or not computed."""
     risk_high: float | None
@@ -175,7 +175,7 @@ class Finding(NamedTuple):
     motor: MotorFinding | None
     cause: Cause | None
     risk_output: str | None
-    """The output that is the risk, if it is not the first of the profile."""
+    """The output that is the risk, if it is not the first risk of the profile."""
     output: str | None
     """The output of the motor, as the log names it."""
     code: str

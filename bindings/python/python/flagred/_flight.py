@@ -38,7 +38,7 @@ class Signal:
     source: str
     """The message or field of the log that contains it."""
     rate_hz: float | None
-    """Values per second, without pauses."""
+    """The number of values per second, not counting pauses."""
 
     def __init__(self, flight: FlightData, name: str, unit: str, source: str, rate_hz: float | None, base: int) -> None:
         self._flight, self._base = flight, base
@@ -362,7 +362,7 @@ class Assessment(AssessmentData):
         Returns
         -------
         dict
-            ``step`` is the latest step (None if there is none nearby, as without steps), ``mode`` the flight mode,
+            ``step`` is the latest step (None if no step is near, or if there are no steps), ``mode`` the flight mode,
             ``inputs`` the inputs with the degrees of their terms, ``rules`` the rules that fired, strongest first. The
             page and the JavaScript package return the same.
 

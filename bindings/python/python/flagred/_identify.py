@@ -37,10 +37,10 @@ class IdentifyValidation(NamedTuple):
     """Rows for which no rule fires; the mean of the other rows replaces the prediction."""
     identified: Figure
     linear: Figure
-    """The error of a line over all columns."""
+    """The error of a linear regression on all columns."""
     mean: Figure
     ratio: Figure
-    """The first error divided by that of the line."""
+    """The error of the identified rule set divided by that of the linear regression."""
 
 
 class IdentifyResult(NamedTuple):

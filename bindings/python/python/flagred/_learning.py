@@ -42,9 +42,9 @@ class LearnResult(NamedTuple):
     missing: int
     """Combinations of terms without a rule."""
     left_out: int
-    """Combinations with rows, but too few or of too low a confidence."""
+    """Combinations of terms with too few rows, or with too low a confidence."""
     completed: int
-    """Rules for combinations without rows, each from the nearest one."""
+    """Rules for combinations of terms without rows, each copied from the nearest combination with rows."""
     moved: int
     """Rules whose consequent was moved for ``rising`` and ``falling``."""
     counterexamples: list[str]
@@ -65,7 +65,7 @@ class ChangedNumber(NamedTuple):
 
 
 class Figure(NamedTuple):
-    """A figure, and the interval that contains 95 % of the figures of resampled groups, or of rows without groups."""
+    """A figure and its 95 % interval, computed by resampling the groups, or the rows if there are no groups."""
 
     value: float
     low: float
@@ -79,7 +79,7 @@ class TuneValidation(NamedTuple):
     before: Figure
     """The loss of the original model."""
     after: Figure
-    """The loss where each fold is predicted by the model tuned on the others."""
+    """The loss when each fold is predicted by a model that was tuned on the other folds."""
     gain: Figure
 
 
@@ -239,7 +239,7 @@ def tune(
         ``squared`` errors; ``log`` and ``ranking`` for an output of 0 and 1: the mean of -ln p, and 1 minus the area under
         the ROC curve.
     only, fix
-        The variables, or terms as ``variable.term``, that may change exclusively, or that are fixed.
+        The only variables, or terms as ``variable.term``, that may change; and those that must not change.
     weights
         Whether the weights of the rules may change.
     min_distance
@@ -261,8 +261,8 @@ def tune(
 
     Raises
     ------
-    A column is missing, rows cannot be used, or no number may change.
-        A column is missing, rows cannot be used, or nothing may move.
+    DataError
+        A column is missing, rows cannot be used, or no number may change.
     RuleSetError
         The rule set cannot be used.
     TuneInterrupted

@@ -303,7 +303,7 @@ class Model(RuleSet):
             known = ", ".join(f"`{known}`" for known in _ENDINGS)
             raise DataError(f"`{os.fspath(path)}` does not have the extension of a rule set\n  help: the extensions are {known}")
         text = self.to_text(_ENDINGS[ending], lossy=lossy)
-        # Line breaks are those of the text that was read.
+        # Keeps the line breaks of the text that was read.
         with open(path, "w", encoding="utf-8", newline="") as file:
             file.write(text)
 

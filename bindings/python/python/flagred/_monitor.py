@@ -93,7 +93,7 @@ class Monitor(MonitorData):
             :class:`DataError`.
         in_air
             Whether the autopilot reports that the vehicle is in the air. None is unknown: then idle motors indicate that
-            the vehicle is on the ground. Motors that idle for 3 s while it is True are a fall, with a risk of 100 %.
+            the vehicle is on the ground. Motors that idle for 3 s while it is True count as a fall, with a risk of 100 %.
         signals
             The values of the signals; missing ones are unknown.
 

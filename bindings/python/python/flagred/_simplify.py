@@ -36,7 +36,7 @@ class SimplifyResult(NamedTuple):
     points: int
     """The number of points at which the outputs were compared."""
     difference: Difference | None
-    """The largest difference there; None if there is none."""
+    """The largest difference at these points; None if there is no difference."""
 
 
 def simplify(

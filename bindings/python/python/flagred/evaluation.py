@@ -44,7 +44,7 @@ _Log = Flight | str | os.PathLike[str] | bytes | IO[bytes]
 
 
 class Areas(NamedTuple):
-    """How well an estimator ranks critical cases. Intervals contain 95 %, by resampling whole flights."""
+    """How well an estimator ranks critical cases. Intervals are 95 % intervals, computed by resampling whole flights."""
 
     auc: float | None
     """The area under the ROC curve."""
@@ -55,7 +55,7 @@ class Areas(NamedTuple):
     no_auc: str | None
     """The reason why there is no area, such as ``no critical step``."""
     within_flight_auc: float | None
-    """The mean over the flights that have critical and other cases."""
+    """The mean area over the flights that have both critical and other cases."""
     within_flight_auc_interval: _Interval | None
     within_flight_flights: int
     """The number of those flights."""
@@ -68,7 +68,7 @@ class Areas(NamedTuple):
 
 
 class Band(NamedTuple):
-    """A tenth of the scale of a risk: the share of cases with such a risk that became critical."""
+    """The cases with a risk in a band of 10 %, and the share of them that became critical."""
 
     from_pct: float
     to_pct: float
@@ -79,14 +79,14 @@ class Band(NamedTuple):
 
 
 class Warnings(NamedTuple):
-    """The quality of the warnings of a profile: levels of WARN and FAIL compared with episodes of critical error."""
+    """How well the warnings of a profile (levels WARN and FAIL) announce episodes of critical error."""
 
     flights: int
     hours: float
     """The assessed time."""
     episodes: int
     announced: int
-    """Episodes during a warning that began before them."""
+    """Episodes that began while a warning was on."""
     lead_s_median: float | None
     groups: int
     """Groups of episodes at most 5 s apart."""
@@ -104,18 +104,18 @@ class Warnings(NamedTuple):
 
 
 class NeedlessAlarms(NamedTuple):
-    """The alarms of a profile in times without danger."""
+    """The alarms of a profile in times without danger: in calm stretches, or in ordinary flights."""
 
     flights: int
-    """The flights with such times and a verdict."""
+    """The number of flights that contain times without danger and have a verdict."""
     not_assessed: int
-    """The flights with such times whose verdict is NA."""
+    """The number of flights that contain times without danger, but whose verdict is NA."""
     hours: float
-    """The length of these times."""
+    """The total length of the times without danger."""
     verdicts: dict[str, int]
     """The numbers of flights with the verdicts GOOD, WARN and FAIL."""
     alarms: int
-    """Times of WARN or FAIL; a time that changes between them counts once."""
+    """Periods of WARN or FAIL; a period that changes between them counts once."""
     alarms_per_hour: float | None
     alarms_per_hour_interval: _Interval | None
     fails: int
@@ -140,7 +140,7 @@ class Upsets(NamedTuple):
 
 
 class AlarmsOfKind(NamedTuple):
-    """The alarms of a profile in flights of a kind."""
+    """The alarms of a profile in flights of one kind."""
 
     calm_stretches: NeedlessAlarms
     upsets: Upsets
@@ -150,12 +150,13 @@ class Alarms(NamedTuple):
     """The alarms of a profile."""
 
     calm_stretches: NeedlessAlarms
-    """At least 20 s, from 5 s after take-off, 10 s away from any error over 5 degrees and any tilt over 45 degrees."""
+    """Stretches of at least 20 s, later than 5 s after take-off, and at least 10 s away from any error over 5 degrees and any
+    tilt over 45 degrees."""
     ordinary_flights: NeedlessAlarms
     """Flights whose error over a second stays within 5 degrees, whose tilt stays under 45 degrees, and without an upset."""
     upsets: Upsets
     upsets_by_fail: Upsets
-    """Counted by FAIL only."""
+    """The same upsets, where only FAIL counts as an alarm."""
     by_kind: dict[str, AlarmsOfKind]
 
 
@@ -165,20 +166,20 @@ class Estimator(NamedTuple):
     name: str
     description: str
     areas: Areas
-    """Over all cases."""
+    """The areas over all cases."""
     quiet: Areas | None
-    """Over steps without a critical error in the 5 s before; None for whole flights."""
+    """The areas over steps without a critical error in the 5 s before; None for whole flights."""
     onset: Areas | None
-    """Over steps without a critical error in the 10 s before; None for whole flights."""
+    """The areas over steps without a critical error in the 10 s before; None for whole flights."""
     by_vehicle: dict[str, Areas]
     by_kind: dict[str, Areas]
     reliability: list[Band] | None
-    """For a risk in %; None for other scores."""
+    """The reliability of a risk in %; None for other scores."""
     warnings: Warnings | None
-    """For a profile on flights; None for others."""
+    """The warnings of a profile on flights; None for predictors and for ``rows``."""
     warnings_by_kind: dict[str, Warnings]
     alarms: Alarms | None
-    """For a profile on flights; None for others."""
+    """The alarms of a profile on flights; None for predictors and for ``rows``."""
 
 
 class Span(NamedTuple):

@@ -2,7 +2,7 @@
 //! matching module.
 //!
 //! It does the same as the program `wasm-bindgen --target web`, which must have the version that the module was
-//! compiled with. Cargo.lock ensures that here, and nothing needs to be installed.
+//! compiled with. Here Cargo.lock ensures the right version, and nothing needs to be installed.
 
 use std::{env, process::ExitCode};
 

@@ -34,14 +34,14 @@ pub struct DataTable {
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
 struct Errors<'a> {
-    /// The output that is compared, and its unit.
+    /// The name of the output that is compared.
     output: &'a str,
     unit: Option<&'a str>,
     rows: usize,
     /// The reasons why rows are not used, at most 20.
     refused: Vec<String>,
     refused_count: usize,
-    /// Rows in which the rule set has no value.
+    /// The number of rows in which the rule set has no value.
     without_value: usize,
     /// The RMS error; `null` if no row has a value.
     rms: Option<f64>,
@@ -141,8 +141,8 @@ impl DataTable {
         })
     }
 
-    /// Moves the numbers of a rule set to reduce its error on the rows, like `flagred tune`: a JSON object with the new
-    /// text. `watch` is called with the step, the error so far and the text so far.
+    /// Moves the numbers of a rule set to reduce its error on the rows, like `flagred tune`. Returns a JSON object
+    /// with the new text. `watch` is called with the step, the error so far and the text so far.
     pub fn tune(&self, text: &str, watch: &Function) -> Result<String, JsError> {
         let model = parsed(text)?;
         let rows = self.usable(&model)?;
@@ -207,8 +207,8 @@ impl DataTable {
         })
     }
 
-    /// The rule set with its rules replaced by rules learned from the rows, like `flagred learn`: a JSON object with
-    /// the new text. `complete` adds rules for combinations of terms without rows.
+    /// Replaces the rules of a rule set by rules learned from the rows, like `flagred learn`. Returns a JSON object
+    /// with the new text. `complete` adds rules for combinations of terms without rows.
     pub fn learn(&self, text: &str, complete: bool) -> Result<String, JsError> {
         let whole = parsed(text)?;
         let refused = |error: learn::LearnError| failure(&error, Some(error.help()));
@@ -330,7 +330,7 @@ impl DataTable {
             .map_err(|(message, help)| failure(format!("`{}`: {message}", self.file), Some(&help)))
     }
 
-    /// Returns the rows; it is an error if none can be used.
+    /// Returns the rows, or an error if none can be used.
     fn usable(&self, model: &Model) -> Result<Rows, JsError> {
         let rows = self.rows(model)?;
         match rows.values.is_empty() {

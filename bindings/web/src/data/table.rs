@@ -16,7 +16,7 @@ pub(super) struct Table {
 
 /// The rows that can be used, and the reasons why the others cannot.
 pub(super) struct Rows {
-    /// The inputs, then the output.
+    /// For each row, the values of the inputs, then the value of the output.
     pub(super) values: Vec<Vec<f64>>,
     pub(super) lines: Vec<u64>,
     pub(super) refused: Vec<String>,

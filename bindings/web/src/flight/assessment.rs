@@ -27,7 +27,7 @@ impl Assessment {
         documents(&[self])
     }
 
-    /// The same document on one line and without its steps.
+    /// The document of `json` on one line, without its steps.
     pub fn brief(&self) -> Result<String, JsError> {
         let Subject {
             name,

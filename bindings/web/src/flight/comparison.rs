@@ -55,7 +55,7 @@ impl Comparison {
         self.0.first().map(page).unwrap_or_default()
     }
 
-    /// The body of that page, for a stretch of time since the start of each flight, or for all of it.
+    /// The body of the page of `html`, for a stretch of time since the start of each flight, or for all of it.
     pub fn part(&self, start_s: Option<f64>, end_s: Option<f64>) -> String {
         let stretch = start_s.zip(end_s);
         let stretch = stretch.map(|(start_s, end_s)| Stretch { start_s, end_s });

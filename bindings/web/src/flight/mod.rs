@@ -42,8 +42,8 @@ pub struct Flight {
 #[wasm_bindgen]
 impl Flight {
     /// Reads a log from front to back, plain or gzipped. `read` takes an offset and a length in bytes and returns a
-    /// `Uint8Array`, which is empty at the end. Of the signals that do not come from the motors, those in `signals` are
-    /// kept, or all.
+    /// `Uint8Array`, which is empty at the end. Signals that do not come from the motors are kept only if they are in
+    /// `signals`; without `signals`, all are kept.
     #[wasm_bindgen(constructor)]
     pub fn new(
         name: String,

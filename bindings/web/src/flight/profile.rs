@@ -76,7 +76,8 @@ impl Profile {
         )
     }
 
-    /// The signals that must be read from a log to assess it and to draw the report without added signals.
+    /// The signals that must be read from a log to assess it and to draw its report, except for signals that a reader
+    /// may add to the report.
     #[wasm_bindgen(getter)]
     pub fn signals(&self) -> Vec<String> {
         flagred_report::signals(&self.loaded.estimator)

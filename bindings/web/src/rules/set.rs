@@ -30,12 +30,12 @@ pub struct RuleSet {
     pub(super) engine: Engine,
     /// For a profile: its output, the filling of the gaps of its rules, and the name of the method.
     profile: Option<(usize, Filling, &'static str)>,
-    /// The memory for evaluating single values, once one was requested.
+    /// The memory for evaluating single values; it is allocated when the first one is requested.
     pub(super) memory: Option<Memory>,
 }
 
-/// The content of a map: the index of an output and of one or two inputs, the parts of their ranges, the number of
-/// points along each, and a value for each input, at which it is held if it is not an axis.
+/// The content of a map: the output, one or two inputs as axes with the parts of their ranges that are shown, the
+/// number of points along each axis, and the fixed values of the other inputs.
 #[wasm_bindgen(js_name = View)]
 #[derive(Debug, Clone)]
 pub struct View {
@@ -96,8 +96,9 @@ struct About<'a> {
     inputs: Vec<Named<'a>>,
     outputs: Vec<Named<'a>>,
     rules: Vec<String>,
-    /// The index of the output that a profile uses as its risk, and its method for filling gaps.
+    /// The index of the output that a profile uses as its risk.
     output: usize,
+    /// The method by which a profile fills gaps between the rules.
     filling: Option<&'a str>,
 }
 
@@ -198,7 +199,7 @@ impl RuleSet {
         json(&Explained::new(&self.model().name, &explanation).with_reasons(silent, changes))
     }
 
-    /// Values for the inputs that are not axes: those in `fixed` that are not NaN, otherwise the middle of the range,
+    /// Values for the inputs that are not axes: those in `fixed` that are finite, otherwise the middle of the range,
     /// or a value at which the output varies more.
     pub fn held(&self, output: usize, axes: &[usize], fixed: &[f64]) -> Vec<f64> {
         let fixed: Vec<Option<f64>> = fixed.iter().map(|x| x.is_finite().then_some(*x)).collect();

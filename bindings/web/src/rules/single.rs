@@ -31,7 +31,7 @@ impl RuleSet {
             return f64::NAN;
         };
         let (scratch, outcomes) = (&mut memory.scratch, &mut memory.outcomes);
-        // This fails if no rule fires and `when_no_rule_fires` of the output is `error`.
+        // This fails if no rule fires and `when_no_rule_fires` of an output is `error`.
         let evaluated = self.engine.evaluate_with(scratch, &memory.point, outcomes);
         let outcome = evaluated.ok().and_then(|()| memory.outcomes.get(output));
         outcome.and_then(Outcome::value).unwrap_or(f64::NAN)

@@ -266,7 +266,8 @@ struct Handle {
 }
 
 impl<'a> Drawn<'a> {
-    /// Creates a variable to draw. For an output, `output` is whether its terms are numbers.
+    /// Creates a variable to draw. `output` is `None` for an input; for an output, it is whether the terms are
+    /// numbers.
     fn new(
         document: &Document,
         index: usize,
@@ -331,7 +332,7 @@ fn curve(variable: &Variable, shape: &MembershipFunction, height: f64) -> Vec<f6
         .collect()
 }
 
-/// A span in UTF-16 code units.
+/// Converts an offset in bytes to UTF-16 code units.
 pub(super) fn utf16(text: &str, byte: usize) -> usize {
     let before = text.char_indices().take_while(|(at, _)| *at < byte);
     before.map(|(_, letter)| letter.len_utf16()).sum()

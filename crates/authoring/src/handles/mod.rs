@@ -49,8 +49,8 @@ enum Grip {
     Point(usize),
 }
 
-/// Returns the handles of a term. Variables are counted inputs first. A profile and a formula have no handles, nor has
-/// a term that cannot be read or whose range cannot be read.
+/// Returns the handles of a term. Variables are counted inputs first. The result is empty for a profile, for a
+/// formula, and for a term that cannot be read or whose range cannot be read.
 pub fn of(document: &Document, variable: usize, term: usize) -> Vec<Handle> {
     let found = Place::find(document, variable, term);
     let handles = found.map(|place| place.handles()).unwrap_or_default();
@@ -61,7 +61,7 @@ pub fn of(document: &Document, variable: usize, term: usize) -> Vec<Handle> {
 /// about a thousandth of the range.
 ///
 /// # Errors
-/// The reason why the handle cannot be moved.
+/// If the handle cannot be moved; the error is the reason.
 pub fn moved(
     document: &Document,
     (variable, term): (usize, usize),
@@ -117,7 +117,7 @@ impl<'d> Place<'d> {
         !self.spans.partition.is_empty()
     }
 
-    /// The number of decimals of a position: a thousandth of the range, or slightly finer.
+    /// The number of decimals of a position, so that its last digit stands for a thousandth of the range or less.
     fn decimals(&self) -> usize {
         let width = self.variable.high - self.variable.low;
         (3.0 - width.log10().floor()).clamp(0.0, 17.0) as usize
@@ -136,7 +136,7 @@ impl<'d> Place<'d> {
         }
         let own = self.spans.terms.get(self.index_of_term);
         if self.term.lower.is_some() && own.is_none_or(|spans| spans.numbers.is_empty()) {
-            // The numbers in the text are those of a short form.
+            // The term is written in a short form, whose numbers are not the parameters of its function.
             return Vec::new();
         }
         let shape = &self.term.membership_function;
@@ -148,7 +148,7 @@ impl<'d> Place<'d> {
         if matches!(shape, MembershipFunction::Constant { .. })
             && self.index < self.rules.model.inputs.len()
         {
-            // The value is a degree, not a position.
+            // The number is a degree, not a position.
             return Vec::new();
         }
         let parameters = shape.parameters();
@@ -157,7 +157,7 @@ impl<'d> Place<'d> {
             .collect()
     }
 
-    /// The handle of a term of a partition: its peak, which moves between the neighbouring peaks.
+    /// The handle of a term in a partition: the peak of the term, which moves between the neighbouring peaks.
     fn peak(&self) -> Option<(Grip, Handle)> {
         let peaks = self.variable.partition_peaks()?;
         let at = self.index_of_term;
@@ -235,7 +235,7 @@ impl<'d> Place<'d> {
             (Shape::Gaussian2 { .. }, "left_sd") => Some((0, -1.0)),
             (Shape::Gaussian2 { .. }, "right_sd") => Some((2, 1.0)),
             (Shape::Cosine { .. }, "width") => Some((0, 0.5)),
-            // The position with a degree of 0.5.
+            // The handle is where the degree is 0.5.
             (Shape::Spike { .. }, "width") => Some((0, std::f64::consts::LN_2 / 10.0)),
             (_, "slope" | "left_slope" | "right_slope") => return None,
             _ => None,

@@ -112,7 +112,7 @@ impl<'a> Line<'a> {
         }
     }
 
-    /// Advice for a word that is not an option, where the command takes no further one.
+    /// Advice for a word that is not an option, if the command takes no further such word.
     pub(super) fn argument(&self, word: &str) -> Option<String> {
         let name = self.command.get_name();
         let positionals = self.positionals();
@@ -193,7 +193,7 @@ impl<'a> Line<'a> {
         })
     }
 
-    /// The words that are neither options nor their values.
+    /// The words that are neither options nor values of options.
     pub(super) fn positionals(&self) -> Vec<&str> {
         let mut found = Vec::new();
         let mut words = self.words.iter();

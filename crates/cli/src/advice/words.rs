@@ -1,6 +1,6 @@
 //! Words of other programs for commands, options and values, with the words here.
 
-/// Names of commands in other programs, and the commands here.
+/// Names of commands in other programs, and the equivalent commands here.
 pub(super) const COMMANDS: &[(&str, &str)] = &[
     (
         "analyze analyse analysis evaluate-flight risk",
@@ -85,7 +85,7 @@ pub(super) const COMMANDS: &[(&str, &str)] = &[
     ),
 ];
 
-/// Options of other programs, and the same option here. An entry counts for the commands that have this option.
+/// Options of other programs, and the equivalent option here. An entry applies to the commands that have this option.
 pub(super) const RENAMED: &[(&str, &str)] = &[
     (
         "--sep --separator --delim --field-separator -d -s -F",
@@ -139,7 +139,7 @@ pub(super) const RENAMED: &[(&str, &str)] = &[
     ("--ardupilot", "--lua"),
 ];
 
-/// Options that name the file that is an argument without an option.
+/// Options of other programs for the file that is a positional argument here.
 pub(super) const FILES: &[&str] = &[
     "--file",
     "--files",
@@ -161,7 +161,8 @@ pub(super) const FILES: &[&str] = &[
     "-i",
 ];
 
-/// Options of single commands. `VALUE` in the advice is the value that follows the option.
+/// Advice for options of single commands: the commands, the options, and the advice, in which `VALUE` is the value
+/// that follows the option.
 pub(super) const OPTIONS: &[(&str, &str, &str)] = &[
     (
         "learn tune",
@@ -245,7 +246,8 @@ pub(super) const OPTIONS: &[(&str, &str, &str)] = &[
     ),
 ];
 
-/// Values of options in other programs, and the same value here. An entry counts where this value is possible.
+/// Values of options in other programs, and the equivalent value here. An entry applies only to options that accept
+/// the value here.
 pub(super) const VALUES: &[(&str, &str)] = &[
     ("mse rmse l2 square sq", "squared"),
     ("logloss cross-entropy crossentropy bce nll", "log"),

@@ -14,8 +14,9 @@ use fuzzy::{
 use super::{BEFORE_S, Cut, FileRows, Plan, Row};
 use crate::{failure::Failure, flights::open_complete};
 
-/// Seconds that rows of [`Cut::Ahead`] omit after take-off and before the end of a time in the air, if the header names no judged time.
+/// Seconds after take-off without rows of [`Cut::Ahead`], if the header does not contain the judged time.
 const AFTER_TAKE_OFF_S: f64 = 2.0;
+/// Seconds before the end of a time in the air without rows of [`Cut::Ahead`], if the header does not contain the judged time.
 const BEFORE_END_S: f64 = 1.0;
 
 pub(super) fn rows(log: &str, plan: &Plan) -> Result<FileRows, Failure> {
@@ -134,7 +135,8 @@ fn moments(cut: Cut, from_s: f64, to_s: f64) -> Vec<f64> {
     }
 }
 
-/// Returns the inputs at each moment as a monitor computes them, over windows of one length or over their own; NaN is unknown.
+/// Returns the inputs at each moment as a monitor computes them; NaN is unknown. If `length_s` is given, it replaces
+/// the window of every input.
 fn inputs(
     flight: &Flight,
     plan: &Plan,
@@ -157,7 +159,8 @@ fn inputs(
     let mut rows = Vec::with_capacity(moments.len());
     let mut now = vec![f64::NAN; profile.inputs.len()];
     log::for_each_sample(flight, carried, |sample| {
-        // The state at a moment is that after the newest sample up to it. A short contact with the ground is ignored.
+        // The state at a moment is the state after the latest sample at or before it. A short contact with the ground
+        // is ignored.
         while moments
             .get(rows.len())
             .is_some_and(|t_s| *t_s + 1e-6 < sample.t_s)

@@ -70,7 +70,7 @@ enum Cut {
     Ahead { horizon_s: f64, step_s: f64 },
 }
 
-/// Lengths of time before a row of [`Cut::Ahead`] for which the largest attitude error is reported.
+/// Periods before a row of [`Cut::Ahead`], in seconds; the largest attitude error in each of them is reported.
 const BEFORE_S: [f64; 2] = [5.0, 10.0];
 
 /// One row of the data set.

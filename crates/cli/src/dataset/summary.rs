@@ -10,10 +10,10 @@ use crate::{
     table::{BadCell, Table},
 };
 
-/// The column of the attitude error, which identifies such a table.
+/// The column of the attitude error.
 const ERROR: &str = "att_rmse_deg";
 
-/// Opens the file as such a table, if its first line names an attitude error and no time.
+/// Opens a file as a table with a row for each flight, if its first line names an attitude error and no time.
 pub(super) fn open(path: &Path) -> Option<Result<Table, Failure>> {
     let mut start = Vec::new();
     File::open(path)
@@ -74,7 +74,7 @@ pub(super) fn rows(table: &Table, plan: &Plan) -> Result<FileRows, Failure> {
             inputs,
             errors_before_deg: Vec::new(),
             att_rmse_deg,
-            // A crash has no attitude error that corresponds to it.
+            // The attitude error does not reflect a crash, which counts as a risk of 100 %.
             risk_pct: if has_crashed {
                 100.0
             } else {

@@ -23,10 +23,11 @@ const WAITING: usize = 2;
 /// A block after evaluation.
 type BlockResult = Result<(Block, Tally), Failure>;
 
-/// Evaluates and writes rows to the end of the table, or while `is_read`.
+/// Evaluates the rows of the table and writes the results, until the table ends or `is_read` returns false.
 ///
 /// # Errors
-/// The output cannot be written. If the table cannot be read to its end, the inner result reports it, after all earlier rows.
+/// If the output cannot be written. If the table cannot be read to its end, the earlier rows are written, and the
+/// inner result is the error.
 pub(super) fn run<W: Write + ?Sized>(
     plan: &Plan,
     reader: Reader,
@@ -34,13 +35,13 @@ pub(super) fn run<W: Write + ?Sized>(
     is_read: impl Fn(&W) -> bool,
 ) -> io::Result<Result<Tally, Failure>> {
     let threads = match plan.engine.model().keeps_previous() {
-        // Each row depends on the row before.
+        // Each row depends on the row before it, so one thread evaluates all of them.
         true => 1,
         false => thread::available_parallelism().map_or(1, usize::from),
     };
     thread::scope(|scope| {
         let (spare, spares) = channel();
-        // Thread `i` evaluates every n-th block, which determines their order.
+        // Thread `i` evaluates every n-th block, so the order of the results is known.
         let (to_threads, from_threads): (Vec<_>, Vec<_>) = (0..threads)
             .map(|_| {
                 let (to_thread, blocks) = sync_channel(WAITING);
@@ -106,7 +107,7 @@ fn write<W: Write + ?Sized>(
             Ok(Ok((block, of_block))) => {
                 out.write_all(&block.written)?;
                 tally.merge(of_block);
-                // Fails only if the table was read to its end; then the spare block is not needed.
+                // Fails only if the table was read to its end; the spare block is then not needed.
                 let _ = spare.send(block);
             }
         }

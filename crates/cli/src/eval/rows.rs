@@ -12,7 +12,7 @@ use crate::{
 
 /// Maximum number of rows in a block.
 const ROWS: usize = 4096;
-/// Bytes of text after which a block ends: rows may be long.
+/// A block ends after this number of bytes of text, because rows may be long.
 const BLOCK_BYTES: usize = 16_000_000;
 
 /// Rows that are read, evaluated and written together.

@@ -23,7 +23,7 @@ pub(super) enum HalfWidth {
 /// Returns the half-width of each input that `--uncertain` names.
 ///
 /// # Errors
-/// There is no such input or column, or the number is negative.
+/// If there is no such input or column, or the number is negative.
 pub(super) fn half_widths(
     options: &[(String, String)],
     engine: &Engine,
@@ -66,7 +66,7 @@ pub(super) fn half_widths(
 /// Returns the half-width of an input in a row; NaN if it is unknown.
 ///
 /// # Errors
-/// The cell is not a number of at least 0.
+/// If the cell does not contain a number of at least 0.
 pub(super) fn in_row(
     half_width: Option<HalfWidth>,
     record: &ByteRecord,

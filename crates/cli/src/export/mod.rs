@@ -127,12 +127,13 @@ pub(crate) fn profile_code(estimator: &Estimator, language: Language) -> Result<
     }
 }
 
-/// As `flagred export` of a profile; the error has its help on a second line.
+/// Exports a profile, like `flagred export`. An error has its help on a second line.
 pub fn export_profile(estimator: &Estimator, language: Language) -> Result<String, String> {
     profile_code(estimator, language).map_err(|failure| failure.to_string())
 }
 
-/// As `flagred export` of a rule set, with the warnings; the error has its help on a second line.
+/// Exports a rule set, like `flagred export`, and returns the code and the warnings. An error has its help on a second
+/// line.
 pub fn export_rules(
     model: &fuzzy::Model,
     language: Language,
@@ -265,7 +266,7 @@ fn heading(plan: &Plan<'_>, rules: &str, signals: &[&str], option: &str) -> Vec<
     lines.into_iter().map(harmless).collect()
 }
 
-/// Makes a line safe inside a comment, which a name in the line must not end.
+/// Makes a line safe inside a comment: a name in the line must not end the comment.
 fn harmless(line: String) -> String {
     visible(&line).replace("*/", "* /")
 }

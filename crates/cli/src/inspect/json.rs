@@ -49,7 +49,7 @@ pub(crate) struct Document<'a> {
     header: &'a [(String, String)],
     /// The data that the log lacks.
     not_available: Vec<Gap>,
-    /// The amount of data read, and damage.
+    /// The amount of data that was read, and the damage that was found.
     read: &'a Report,
 }
 

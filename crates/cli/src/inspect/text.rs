@@ -41,7 +41,7 @@ fn line(out: &mut impl Write, key: &str, value: &str) -> io::Result<()> {
     writeln!(out, "  {key:<11}{}", visible(value))
 }
 
-/// Writes lines, the first one preceded by the key; writes nothing if there are no lines.
+/// Writes lines, the first one after the key; writes nothing if there are no lines.
 fn lines(
     out: &mut impl Write,
     key: &str,

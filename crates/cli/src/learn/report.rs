@@ -239,7 +239,7 @@ struct Coverage {
 struct GapMethods<'a> {
     /// The number of rules that were left out, one at a time.
     rules_left_out: u32,
-    /// The errors without leaving out any rule, on the rows of the rules that were left out: a lower bound for the
+    /// The errors with all rules, on the rows of the rules that were left out: a lower bound for the errors of the
     /// methods.
     with_the_rule: &'a Errors,
     /// The errors of each method without the rule.

@@ -12,10 +12,11 @@ const LONGEST: u64 = 16_000_000;
 /// Maximum number of bytes of a header line.
 const LONGEST_LINE: u64 = 4096;
 
-/// Reads a message; `None` at the end. Messages that are too long or malformed are skipped, since the next ones can still be read.
+/// Reads a message; `None` at the end. Messages that are too long or malformed are skipped, since the next ones can
+/// still be read.
 ///
 /// # Errors
-/// The header of a message cannot be read, so the end of the message is unknown.
+/// If the header of a message cannot be read, because the end of the message is then unknown.
 pub(super) fn read<R: BufRead>(from: &mut R) -> io::Result<Option<Message>> {
     while let Some(length) = head(from)? {
         if length > LONGEST {

@@ -1,4 +1,4 @@
-//! Files that are written completely or not at all, and never over an input or another output of the same call.
+//! Files that are written completely or not at all, and never over an input or another output of the same command.
 
 use std::{
     fs::{self, File, Metadata, OpenOptions},
@@ -52,7 +52,7 @@ enum Identity {
     Path(PathBuf),
 }
 
-/// The files that a call reads and writes.
+/// The files that a command reads and writes.
 #[derive(Default)]
 pub(crate) struct Files {
     known: Vec<FileUse>,
@@ -68,19 +68,19 @@ struct FileUse {
 }
 
 impl Files {
-    /// Starts with the inputs; `-` is standard input.
+    /// Registers the inputs; `-` is standard input.
     ///
     /// # Errors
     ///
-    /// Standard output is redirected to an input.
+    /// If standard output is redirected to an input.
     pub(crate) fn reading<P: AsRef<Path>>(
         inputs: impl IntoIterator<Item = P>,
     ) -> Result<Files, Failure> {
         let mut files = Files::default();
         for input in inputs {
             let input = input.as_ref();
-            // An input that is not a regular file, or cannot be read, is not registered: an output of that name would
-            // not replace it.
+            // An input that is not a regular file, or cannot be read, is not registered: an output with that name
+            // would not replace it.
             let identity = match is_standard(input) {
                 true => standard(Stream::Input),
                 false => fs::metadata(input)
@@ -103,7 +103,7 @@ impl Files {
     ///
     /// # Errors
     ///
-    /// The output is an input or another output, exists and must not be replaced, or cannot be written.
+    /// If the output is an input or another output, exists and must not be replaced, or cannot be written.
     pub(crate) fn output(&mut self, named: &Path, replace: Replace) -> Result<Output, Failure> {
         let shown = format!("`{}`", named.display());
         let output = |destination| Output {
@@ -150,7 +150,7 @@ impl Files {
         Ok(output(Destination::File(target, replace)))
     }
 
-    /// As [`Files::output`] for an optional output, which replaces an existing file.
+    /// Like [`Files::output`], for an optional output, which replaces an existing file.
     pub(crate) fn optional(&mut self, named: Option<&PathBuf>) -> Result<Option<Output>, Failure> {
         let output = named.map(|named| self.output(named, Replace::Yes));
         output.transpose()
@@ -221,11 +221,12 @@ impl Output {
     }
 }
 
-/// Writes several texts: files, then devices, then standard output, which may block. If one cannot be written, the others still are.
+/// Writes several texts: files, then devices, then standard output, which may block. If one cannot be written, the
+/// others still are.
 ///
 /// # Errors
 ///
-/// The first failure.
+/// The first failure, if there is one.
 pub(crate) fn write_all(mut texts: Vec<(&Output, String)>) -> Result<(), Failure> {
     texts.sort_by_key(|(output, _)| match output.destination {
         Destination::File(..) => 0,
@@ -240,7 +241,7 @@ pub(crate) fn write_all(mut texts: Vec<(&Output, String)>) -> Result<(), Failure
     failed.map_or(Ok(()), Err)
 }
 
-/// Creates a file for continuous writing. An existing file is refused; an existing device is opened.
+/// Creates a file to which data is appended over time. An existing file is refused; an existing device is opened.
 pub(crate) fn new_file(named: &Path) -> Result<File, Failure> {
     let special = fs::metadata(named).is_ok_and(|found| !found.is_file() && !found.is_dir());
     let opened = match special {

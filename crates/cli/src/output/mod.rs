@@ -72,7 +72,7 @@ pub(crate) fn table_path(text: &str) -> Result<PathBuf, String> {
 ///
 /// # Errors
 ///
-/// The extension is another one. The message contains `what` and the path with the first allowed extension.
+/// If the path has another extension. The message contains `what` and the path with the first allowed extension.
 pub(crate) fn path_of(text: &str, what: &str, extensions: &[&str]) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     match extensions.first() {
@@ -88,7 +88,7 @@ pub(crate) fn path_of(text: &str, what: &str, extensions: &[&str]) -> Result<Pat
     }
 }
 
-/// Writes a text to a file, or to standard output; a terminal shows its colours.
+/// Writes a text to a file or to standard output. Colours in the text are kept only on a terminal.
 pub(crate) fn print(output: Option<&Output>, text: &str) -> Result<(), Failure> {
     if let Some(output) = output.filter(|output| !output.is_stdout()) {
         return output.write(&anstream::adapter::strip_str(text).to_string());

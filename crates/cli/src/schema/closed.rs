@@ -107,7 +107,7 @@ fn merged(first: &Object, second: &Object) -> Object {
     all
 }
 
-/// Removes types without references. A schema that consists of types only keeps them all.
+/// Removes types that nothing refers to. A schema that consists only of types keeps them all.
 fn drop_unused(root: &mut Value) {
     let text = root.to_string();
     if let Value::Object(object) = root

@@ -173,7 +173,7 @@ impl Response<'_> {
         for (name, value) in &self.headers {
             text += &format!("{name}: {value}\r\n");
         }
-        // Responses with these two statuses have no body and no length.
+        // Responses with these statuses have no body and no length.
         if !matches!(self.status, Status::NO_CONTENT | Status::NOT_MODIFIED) {
             text += &format!("Content-Length: {}\r\n", self.body.len());
         }
@@ -238,7 +238,7 @@ pub(super) fn serve<'a>(
     };
     DeadlineStream::new(stream, PATIENCE_TO_ANSWER).write_all(&response.bytes(with_body))?;
     stream.shutdown(Shutdown::Write)?;
-    // Closing the connection with unread input would reset it, and the answer would be lost.
+    // If the connection were closed with unread input, it would be reset and the answer would be lost.
     reading.end = reading.end.min(Instant::now() + Duration::from_secs(1));
     io::copy(&mut reading.take(DRAINED), &mut io::sink())?;
     Ok(())

@@ -81,7 +81,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     let (interrupt, interrupted) = mpsc::channel();
     ctrlc::set_handler(move || {
-        // Sending fails only for a second interrupt, when the first has been received already.
+        // Sending fails only for a second interrupt, after the first has been received.
         let _ = interrupt.send(());
     })
     .map_err(|error| Failure::unreadable(format!("interrupts cannot be caught: {error}")))?;

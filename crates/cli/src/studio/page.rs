@@ -9,7 +9,7 @@ use crate::failure::Failure;
 /// The gzipped page that `build.rs` found.
 const PACKED: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/studio.html.gz"));
 
-/// The text before and after the policy in the page.
+/// The texts that surround the policy in the page.
 const POLICY: (&str, &str) = (
     "<meta http-equiv=\"Content-Security-Policy\" content=\"",
     "\">",

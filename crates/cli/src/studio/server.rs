@@ -27,7 +27,7 @@ use crate::failure::Failure;
 
 /// The policy of responses other than the page.
 const NOTHING: &str = "default-src 'none'";
-/// A directive that a page cannot set in its own policy.
+/// A directive that a page cannot set in the policy that it contains itself.
 const NO_FRAMES: &str = "; frame-ancestors 'none'";
 
 pub(super) struct Server {

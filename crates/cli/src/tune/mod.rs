@@ -371,7 +371,7 @@ impl<'a> SearchObserver<'a> {
         }
     }
 
-    /// Called after each step of the search and of cross-validation.
+    /// Called after each step of the search and of cross-validation: shows the progress and writes checkpoints.
     fn step(&mut self, progress: &Progress<'_>, fold: Option<u32>) -> ControlFlow<()> {
         const BETWEEN: Duration = Duration::from_secs(5);
         let part = fold.map_or(0, |fold| fold + 1);

@@ -33,8 +33,9 @@ use crate::{
     failure::{Exit, Failure},
 };
 
-/// Intervals at which all vehicles are updated, and at which the screen is drawn.
+/// The interval at which all vehicles are updated.
 const TICK: Duration = Duration::from_millis(50);
+/// The interval at which the screen is drawn.
 const FRAME: Duration = Duration::from_millis(500);
 /// Maximum number of packets queued for evaluation. When the queue is full, the links wait.
 const PACKETS: usize = 20_000;
@@ -308,7 +309,7 @@ impl<'e> LiveOutput<'e> {
         }
     }
 
-    /// Leaves the screen, and prints a line for each vehicle.
+    /// Leaves the full screen, and prints a line for each vehicle.
     fn end(&mut self, now_s: f64, all: &[Summary], fleet: &Fleet<'_>) {
         if self.form == OutputForm::Screen {
             thread::sleep(TICK);
@@ -373,7 +374,7 @@ impl Drop for LiveOutput<'_> {
     }
 }
 
-/// Truncates a line to a row, less one character: a full row would wrap.
+/// Truncates a line to one column less than the width, because a full line would wrap.
 fn cut(line: &str, columns: usize) -> String {
     line.chars().take(columns.saturating_sub(1)).collect()
 }

@@ -52,8 +52,9 @@ pub(crate) struct Fleet<'e> {
     members: HashMap<VehicleId, Member<'e>>,
     gone: Vec<Summary>,
     out: SessionOutput,
-    /// Numbers of refused heartbeats of vehicles beyond the maximum, and of dropped vehicles missing from the summary.
+    /// The number of heartbeats of further vehicles that were ignored because the maximum number of vehicles was reached.
     pub(crate) refused: u64,
+    /// The number of dropped vehicles that are missing from the summary, because it is full.
     pub(crate) forgotten: u64,
 }
 
@@ -69,7 +70,7 @@ impl<'e> Fleet<'e> {
         }
     }
 
-    /// Processes a packet, and calls `tell` with its events.
+    /// Processes a packet, and calls `tell` with each event that it causes.
     pub(crate) fn receive(
         &mut self,
         now_s: f64,
@@ -147,8 +148,8 @@ impl<'e> Fleet<'e> {
         all
     }
 
-    /// The vehicles that were found: the worst level first, then the highest risk. A vehicle in the air with unknown risk
-    /// ranks between WARN and GOOD, a vehicle on the ground last.
+    /// The vehicles that were found: those with the worst level first, then those with the highest risk. A vehicle in
+    /// the air with unknown risk ranks between WARN and GOOD, a vehicle on the ground last.
     pub(crate) fn views(&self) -> Vec<(VehicleId, VehicleView<'_>)> {
         let members = self.members.iter();
         let mut views: Vec<(VehicleId, VehicleView<'_>)> = members
@@ -180,7 +181,7 @@ impl<'e> Member<'e> {
         out: &mut SessionOutput,
         tell: &mut impl FnMut(VehicleId, &Event, &Session<'e>),
     ) {
-        // A fleet only receives.
+        // A fleet sends nothing.
         out.packets.clear();
         for event in out.events.drain(..) {
             if let Event::Risk { update } = &event

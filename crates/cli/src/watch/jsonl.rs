@@ -34,7 +34,7 @@ pub(crate) enum EventLine<'a> {
     Started {
         #[schemars(extend("const" = SCHEMA))]
         schema: &'static str,
-        /// Where packets are received.
+        /// The endpoint at which packets are received.
         endpoint: &'a str,
         /// The name of the profile.
         profile: &'a str,
@@ -61,7 +61,7 @@ pub(crate) enum EventLine<'a> {
     },
     /// The watch ended.
     Ended {
-        /// The worst verdict of the flights; one lost in the air is not GOOD.
+        /// The worst verdict of the flights; the verdict of a flight that was lost in the air is not GOOD.
         worst: VerdictWord,
         /// The reason why there is no verdict.
         reason: Option<String>,
@@ -77,7 +77,7 @@ pub(crate) enum EventLine<'a> {
         unsigned: u64,
         /// The number of packets refused because their signature is wrong or repeated (`--key`).
         bad_signatures: u64,
-        /// The numbers of packets that were not trusted.
+        /// The counts of packets that were not trusted.
         not_believed: UntrustedCounts,
         /// The number of packets that could not be sent.
         unsent: u64,
@@ -163,7 +163,7 @@ pub(crate) enum FleetLine<'a> {
     Started {
         #[schemars(extend("const" = FLEET_SCHEMA))]
         schema: &'static str,
-        /// Where packets are received.
+        /// The endpoints at which packets are received.
         endpoints: &'a [String],
         /// The name of the profile.
         profile: &'a str,

@@ -50,8 +50,9 @@ const COMPONENT: u8 = 191;
 const KEY_FILE: u64 = 256;
 /// The largest possible datagram.
 const DATAGRAM: usize = 65_536;
-/// The interval between screen frames, and the maximum number of frames queued for the terminal.
+/// The interval between screen frames.
 const FRAME: Duration = Duration::from_millis(100);
+/// The maximum number of screen frames queued for the terminal.
 const FRAMES: usize = 2;
 /// Maximum number of queued output lines: half an hour of the vehicle's samples.
 const LINES: usize = 50_000;
@@ -102,7 +103,7 @@ pub(crate) struct Arguments {
     record: Option<PathBuf>,
 }
 
-/// The first input without `if_missing` whose signal no MAVLink message contains, and that signal.
+/// Returns the first input without `if_missing` that reads a signal that no MAVLink message contains, and that signal.
 fn not_live(estimator: &Estimator) -> Option<(&str, &str)> {
     let known = known_signals();
     let is_live = |signal: &str| {
@@ -225,7 +226,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 let failed = recorded.err().map(|text| Event::Note { text });
                 out.events.extend(failed);
             }
-            // Packets are sent at once: they must not wait for the display.
+            // Packets are sent at once, so that they do not wait for the display.
             out.packets.drain(..).for_each(|packet| port.send(&packet));
             display.show(now_s, &mut out.events, &session, &estimator)?;
         }

@@ -12,18 +12,19 @@ use crate::failure::Failure;
 
 /// How long a call waits for bytes, which is also the interval of all periodic work.
 const WAIT: Duration = Duration::from_millis(20);
-/// The time limit for connecting, and the interval between attempts.
+/// The time limit for connecting.
 const CONNECT: Duration = Duration::from_secs(3);
+/// The interval between attempts to connect.
 const RETRY: Duration = Duration::from_secs(1);
 
-/// Requested size of the system's buffer for datagrams while the program does not run: a second of 500 vehicles, including the
-/// overhead of each packet. The default suffices for a tenth of that.
+/// Requested size of the system's buffer, which stores datagrams while the program does not read them: those of 500
+/// vehicles for a second, including the overhead of each packet. The default suffices for a tenth of that.
 const BUFFER: usize = 4 << 20;
 
 /// An open endpoint.
 pub(crate) struct Port {
     kind: PortState,
-    /// The reason why the endpoint could not be opened at first, until this is reported.
+    /// The reason why the endpoint could not be opened at first, until that is reported.
     closed_because: Option<String>,
     /// The number of packets that could not be sent.
     unsent: u64,
@@ -34,8 +35,9 @@ enum PortState {
     Closed { endpoint: Endpoint, tried: Instant },
     Udp {
         socket: UdpSocket,
-        /// The origin of the latest datagram, and the address to which packets are sent.
+        /// The origin of the latest datagram.
         from: Option<SocketAddr>,
+        /// The address to which packets are sent.
         to: Option<SocketAddr>,
     },
     Tcp {
@@ -59,7 +61,7 @@ enum PortState {
 
 /// Maximum number of waiting connections.
 const MOST_WAITING: usize = 8;
-/// A waiting connection that sends replaces a client after this silence.
+/// A client that is silent for this long is replaced by a waiting connection that sends.
 const CLIENT_SILENT: Duration = Duration::from_secs(2);
 
 /// An incoming connection.
@@ -90,7 +92,8 @@ impl Port {
     ///
     /// # Errors
     ///
-    /// Another program uses the port, or permission is denied. If `waits` is false, any failure to open it.
+    /// If another program uses the port, or permission is denied. If `waits` is false, also if the endpoint cannot be
+    /// opened for any other reason.
     pub(crate) fn open(endpoint: &Endpoint, waits: bool) -> Result<Port, Failure> {
         let (kind, closed_because) = match open(endpoint) {
             Ok(kind) => (kind, None),
@@ -302,7 +305,8 @@ fn is_temporary(error: &io::Error) -> bool {
     )
 }
 
-/// Serves one client at a time. A waiting connection replaces it if it closes, or if it is silent and the waiting one sends.
+/// Serves one client at a time. A waiting connection takes its place if the client closes, or if the client is silent
+/// and the waiting connection sends.
 fn serve(
     listener: &TcpListener,
     client: &mut Option<Client>,
@@ -339,7 +343,7 @@ fn serve(
         waiting.retain(|next| !matches!(peek(&next.stream), Ok(0)));
         let speaks = |next: &Client| matches!(peek(&next.stream), Ok(1..));
         let Some(index) = waiting.iter().position(speaks) else {
-            // If all waiting connections are silent, the oldest makes room for another one.
+            // If all waiting connections are silent, the oldest is dropped for another one.
             if waiting.len() == MOST_WAITING {
                 waiting.remove(0);
             }

@@ -9,7 +9,7 @@ use std::{
 
 use crate::output;
 
-/// How long the end of the program waits for the last output to be read.
+/// Time limit for the last output to be read before the program ends.
 const LAST_WORDS: Duration = Duration::from_secs(1);
 
 /// Prints pieces of text in their order.

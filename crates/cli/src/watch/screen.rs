@@ -11,8 +11,9 @@ use super::{
 };
 use flagred_report::words::level_style;
 
-/// Escape sequences that enter and leave the alternate screen, without a cursor.
+/// Escape sequence that enters the alternate screen and hides the cursor.
 pub(crate) const ENTER: &str = "\x1b[?1049h\x1b[?25l";
+/// Escape sequence that shows the cursor and leaves the alternate screen.
 pub(crate) const LEAVE: &str = "\x1b[?25h\x1b[?1049l";
 const HOME: &str = "\x1b[H";
 const CLEAR_LINE: &str = "\x1b[K";
@@ -57,8 +58,8 @@ impl Screen {
         }
     }
 
-    /// The text of a screen of this size, in columns and rows, which replaces the one before. The current state comes first;
-    /// the latest events fill the remaining rows.
+    /// Returns the text of a screen of this size, in columns and rows, which replaces the previous screen. The current
+    /// state comes first; the latest events fill the remaining rows.
     pub(crate) fn frame(
         &self,
         view: Option<&VehicleView<'_>>,
@@ -84,7 +85,7 @@ impl Screen {
     }
 }
 
-/// The text that replaces the screen's contents by lines, as many as fit.
+/// Returns the text that replaces the contents of the screen by these lines, as many as fit.
 pub(crate) fn text(lines: &[String], rows: usize) -> String {
     let mut text = HOME.to_owned();
     // A line end in the last row would scroll the first row away.

@@ -49,7 +49,7 @@ pub(crate) struct SessionOutput {
     pub(crate) packets: Vec<Vec<u8>>,
 }
 
-/// Follows the first vehicle on a link that proves to be one.
+/// Follows the first sender on a link that proves to be a vehicle.
 pub(crate) struct Session<'e> {
     estimator: &'e Estimator,
     watch_sender: WatchSender,
@@ -69,7 +69,8 @@ pub(crate) struct Session<'e> {
 }
 
 impl<'e> Session<'e> {
-    /// Creates a session that sends by `sender`, or only listens. If another watch sends warnings, it sends its own only if it `insists`.
+    /// Creates a session that sends with `sender`, or only listens without one. If another watch sends warnings, this
+    /// one also sends them only if it `insists`.
     pub(crate) fn new(
         estimator: &'e Estimator,
         sender: Option<Sender>,
@@ -186,7 +187,7 @@ impl<'e> Session<'e> {
         packet.component == 1 && self.tracked.as_ref().is_some_and(is_it)
     }
 
-    /// Counts a doubtful packet of the vehicle's system from another sender, except a second sender while the vehicle is silent.
+    /// Counts a doubtful packet of the vehicle's system. A second sender is not counted while the vehicle is silent.
     fn doubt(&mut self, now_s: f64, source: Source, packet: &Packet<'_>, out: &mut SessionOutput) {
         let Some(tracked) = &self.tracked else {
             return;

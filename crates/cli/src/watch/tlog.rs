@@ -15,8 +15,9 @@ pub(crate) struct Recording {
     name: String,
     /// `None` after an error.
     file: Option<BufWriter<File>>,
-    /// The number of bytes added, and the number of these that are certainly in the file. Both end with a packet.
+    /// The number of bytes of all packets added.
     added: u64,
+    /// The number of these bytes that are certainly in the file; they end with a complete packet.
     written: u64,
 }
 
@@ -35,7 +36,8 @@ impl Recording {
     ///
     /// # Errors
     ///
-    /// A message if the file cannot be written. It is returned once; the recording ends with its last complete packet.
+    /// If the file cannot be written. The error is a message, and is returned only once. The recording ends with its
+    /// last complete packet.
     pub(crate) fn add(&mut self, packet: &[u8]) -> Result<(), String> {
         let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
         let t_us = since_1970.map_or(0, |time| time.as_micros() as u64);
@@ -47,11 +49,11 @@ impl Recording {
         result.map_err(|error| self.end(&error))
     }
 
-    /// Writes all buffered packets to the file: a watch may end at any moment.
+    /// Writes all buffered packets to the file, because a watch may end at any moment.
     ///
     /// # Errors
     ///
-    /// As [`Recording::add`].
+    /// As for [`Recording::add`].
     pub(crate) fn flush(&mut self) -> Result<(), String> {
         let result = self.file.as_mut().map_or(Ok(()), Write::flush);
         result.map_err(|error| self.end(&error))?;

@@ -15,8 +15,9 @@ use flagred_flightlog::mavlink::{
 
 use fuzzy::drawing::visible;
 
-/// The names of the values that are sent.
+/// The name of the value with the risk.
 pub(crate) const RISK: &str = "FR_RISK";
+/// The name of the value with the elevated risk.
 pub(crate) const ELEVATED: &str = "FR_ELEV";
 /// The sender's system id until a vehicle is found: that of a ground station.
 pub(crate) const NOBODY: u8 = 255;
@@ -82,7 +83,7 @@ pub(crate) fn topic_of(packet: &Packet<'_>) -> Option<String> {
     topic(&packet.message()?)
 }
 
-/// As [`topic_of`], for a decoded message.
+/// Like [`topic_of`], for a decoded message.
 pub(crate) fn topic(message: &MavMessage) -> Option<String> {
     let MavMessage::STATUSTEXT(status) = message else {
         return None;
@@ -130,10 +131,10 @@ pub(crate) fn status(level: Level, text: &str) -> MavMessage {
     })
 }
 
-/// The text of a change of level with its cause, in at most 50 characters: `FLAGRED: WARN risk 78 %, fighting gusts`,
-/// or if motors are near a limit `FLAGRED: WARN risk 78 %, upper limit, motor 3`, or `FLAGRED: WARN motor 3 weak: +24
-/// %`. The finding is passed with its texts. Without a finding, the alarm is still on because the motors have changed
-/// since it was raised.
+/// Returns the text of a change of level with its cause, in at most 50 characters: `FLAGRED: WARN risk 78 %, fighting
+/// gusts`; if motors are near a limit, `FLAGRED: WARN risk 78 %, upper limit, motor 3`; or `FLAGRED: WARN motor 3
+/// weak: +24 %`. `finding` is the finding with its texts. Without one, the level stays because the motors have changed
+/// since the alarm was raised.
 pub(crate) fn say(level: Level, update: &Update, finding: Option<(&Finding, &Words)>) -> String {
     if level > Level::Good && finding.is_none() {
         return format!("{PREFIX}{level} stays: motors not as before");

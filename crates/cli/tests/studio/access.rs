@@ -1,4 +1,4 @@
-//! Access: the page for its user, nothing for anyone else.
+//! Access to the page: only for the user who started it.
 
 use std::{
     fs,
@@ -177,7 +177,7 @@ fn slow_connections_do_not_block_others() {
     for i in 0..200 {
         let mut stream = TcpStream::connect(&studio.authority).unwrap();
         let head = match i % 2 {
-            // In the head, and in the body of a refused request.
+            // Sent in the head, or in the body of a refused request.
             0 => "GET / HTTP/1.1\r\n",
             _ => "PUT /wrong/api/file HTTP/1.1\r\nHost: x\r\nContent-Length: 60000000\r\n\r\n",
         };

@@ -130,7 +130,7 @@ fn a_read_only_file_is_never_written() {
     );
 }
 
-/// A hard link to the old file shows that the new file is another one in its place.
+/// A hard link to the old file proves that saving creates a new file in its place.
 #[test]
 fn the_target_of_a_link_is_replaced_and_keeps_its_mode() {
     let folder = folder(&[("real.yaml", RULES)]);

@@ -151,7 +151,7 @@ fn warned(kind: String, of: &Warnings) -> Vec<String> {
     ]
 }
 
-/// How often cases with a risk were critical; `None` for scores that are not risks.
+/// How often cases in each band of the risk were critical; `None` for scores that are not risks.
 pub(super) fn reliability(estimator: &ProfileScores) -> Option<Table> {
     let bands = estimator.reliability.as_ref()?.iter();
     let rows = bands.map(|band| {

@@ -53,7 +53,7 @@ pub(super) fn read_header(input: &mut Input<'_>) -> Result<(Vec<HeaderLine>, u64
         lines += 1;
         let text = String::from_utf8_lossy(&text);
         let text = text.trim().trim_start_matches('#').trim();
-        // Without this message the value would be missing.
+        // A known key with `=` instead of a colon is an error, because its value would silently be ignored.
         if let Some((key, value)) = text.split_once('=')
             && KEYS.contains(&key.trim())
         {
@@ -73,7 +73,7 @@ pub(super) fn read_header(input: &mut Input<'_>) -> Result<(Vec<HeaderLine>, u64
 /// The value of `written_by` in the files that this crate writes.
 pub(super) const WRITER: &str = "flagred";
 
-/// Whether this crate wrote the file, so that its units are certain even if the values of a damaged log are odd.
+/// Whether this crate wrote the file. If so, its units are certain, even if the values of a damaged log are odd.
 pub(super) fn is_ours(header: &[HeaderLine]) -> bool {
     let mut header = header.iter();
     header.any(|entry| entry.key == "written_by" && entry.value == WRITER)
@@ -220,7 +220,8 @@ pub(super) fn apply_header(
                     )
                 })?;
                 let outside = times.iter().find(|t_s| !span_s.contains(t_s));
-                // A damaged log may contain any time here; it cannot result in a verdict of GOOD.
+                // A file that this crate wrote from a damaged log may contain any time here, which cannot result in a
+                // verdict of GOOD.
                 if let Some(outside) = outside.filter(|_| !is_ours) {
                     let (from_s, to_s) = (span_s.start(), span_s.end());
                     let text = format!(

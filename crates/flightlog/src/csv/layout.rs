@@ -138,7 +138,7 @@ impl Layout {
     }
 }
 
-/// A column such as `Motor_1`, and the name that is meant.
+/// A column with a name such as `Motor_1`, and the name that is probably meant.
 fn meant_as_motor(names: &[String]) -> Option<(&str, String)> {
     names.iter().find_map(|given| {
         let letters = given.chars().filter(|c| c.is_ascii_alphanumeric());

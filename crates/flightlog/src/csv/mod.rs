@@ -36,8 +36,8 @@ pub(crate) fn has_times(start: &[u8]) -> bool {
     header.any(|name| name == b"t_s")
 }
 
-/// Whether a text is a flight CSV, or another table, whose column of times may have another name: the first line names
-/// several columns, and the next one has as many cells.
+/// Whether a text looks like a flight CSV, or like another table, in which the column of times may have another name:
+/// the first line names several columns, and the next one has as many cells.
 pub(crate) fn looks_like(start: &[u8]) -> bool {
     let mut lines = content(start);
     let (Some(header), row) = (lines.next(), lines.next()) else {
@@ -54,7 +54,7 @@ pub(crate) fn looks_like(start: &[u8]) -> bool {
 
 const BOM: &[u8] = b"\xef\xbb\xbf";
 
-/// The content of a cell without surrounding white space and any number of surrounding quotes.
+/// The content of a cell without white space around it and without surrounding quotes, however many.
 fn cell(bytes: &[u8]) -> &[u8] {
     let mut bytes = bytes.trim_ascii();
     while let [b'"', inner @ .., b'"'] = bytes {

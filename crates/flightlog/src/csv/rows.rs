@@ -45,8 +45,9 @@ pub(super) struct RowCollector {
     is_whole: bool,
     /// The first row of motor commands with a later time than the row before: line and both times.
     first_step: Option<(u64, f64, f64)>,
-    /// The number of rows of motor commands with the same time as the previous row, and line and time of the first.
+    /// The number of rows of motor commands with the same time as the previous row.
     repeated: usize,
+    /// The line and the time of the first of these rows.
     first_repeated: Option<(u64, f64)>,
     /// Counts for each column of pulse widths.
     pulses: Vec<Pulses>,
@@ -58,8 +59,9 @@ pub(super) struct RowCollector {
 #[derive(Clone, Default)]
 struct Pulses {
     known: usize,
-    /// The number of cells that are not a pulse width in us, and line and value of the first.
+    /// The number of cells that are not a pulse width in us.
     outside: usize,
+    /// The line and the value of the first of these cells.
     first: Option<(u64, f64)>,
 }
 
@@ -151,7 +153,7 @@ impl RowCollector {
         }
         self.is_whole &= t_s.fract() == 0.0;
         let t_s = self.on_one_clock(t_s, line)?;
-        // A row with a damaged cell is kept with an unknown value: without it the flight would be shorter.
+        // A row with a damaged cell is kept with an unknown value: without the row, the flight would be shorter.
         let mut damaged = None;
         let mut read = |column: &usize| match number(record, *column) {
             Ok(value) => value,
@@ -306,7 +308,7 @@ impl RowCollector {
                 if self.is_in_air() {
                     self.rebooted_in_air_s.push(self.last_s);
                 }
-                // For times from 1e9 s the sum is rounded.
+                // From 1e9 s on, rounding of the sum could make a time go back.
                 Ok((t_s + self.offset_s).max(self.last_s))
             }
             None => {

@@ -31,7 +31,7 @@ pub(super) struct Collector<'o> {
     events: Vec<(f64, Landing)>,
     modes: Vec<(f64, Mode)>,
     texts: Vec<Event>,
-    /// The texts before the messages of a text log.
+    /// The texts of a text log before its first message.
     pub(super) greetings: Vec<String>,
     utc_at_zero_s: Option<f64>,
 }
@@ -356,7 +356,7 @@ fn series_of(known: &mut Vec<(&str, Series)>, name: &'static str, labels: Vec<La
         *of == name && series.signals().map(|signal| signal.label).eq(&labels)
     };
     known.iter().position(same).unwrap_or_else(|| {
-        // An index after the last series means that the rows are dropped.
+        // If there are too many series, the index is out of range and the rows are dropped.
         if known.len() < MOST_SERIES {
             known.push((name, Series::new(labels)));
             return known.len() - 1;

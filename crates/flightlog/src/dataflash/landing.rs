@@ -25,7 +25,8 @@ impl Landing {
     }
 }
 
-/// Armed and in-air times from the events of the log; the latter only if there are such events. A boot ends both.
+/// Armed and in-air times from the events of the log. The in-air times are known only if the log contains take-offs or
+/// landings. A boot ends both.
 pub(super) fn air_from_events(
     events: &[(f64, Landing)],
     boots_s: &[f64],

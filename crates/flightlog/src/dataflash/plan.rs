@@ -5,7 +5,7 @@ use super::signals::{INSTANCE, MessageSpec, SPECS, SignalSource};
 use crate::Options;
 use crate::signal::Label;
 
-/// The use of a message type. Numbers are columns.
+/// The use of a message type. The numbers are indices of columns.
 #[derive(Debug)]
 pub(super) enum MessageRole {
     Nothing,
@@ -45,8 +45,8 @@ pub(super) struct MessageType {
 }
 
 impl MessageType {
-    /// Determines the use of a message type. `series` returns the index of the series that has these signals, for the
-    /// message with that name.
+    /// Determines the use of a message type. `series` returns the index of the series with the given message name and
+    /// signals.
     pub(super) fn new(
         format: Format,
         options: &Options,

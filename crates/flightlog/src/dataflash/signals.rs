@@ -4,11 +4,11 @@
 pub(crate) enum SignalSource {
     /// The first of these labels that the message has.
     Field(&'static [&'static str]),
-    /// As `Field`; in hundredths if the field is an integer (firmware before 3.3).
+    /// As `Field`, but in hundredths if the field is an integer (firmware before 3.3).
     Hundredths(&'static [&'static str]),
     /// The length of the vector of these fields.
     Length(&'static [&'static str]),
-    /// As `Field`; 0, which an autopilot writes before its first position, is unknown.
+    /// As `Field`, but 0, which an autopilot writes before its first position, counts as unknown.
     Position(&'static [&'static str]),
 }
 

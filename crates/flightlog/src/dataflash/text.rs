@@ -11,7 +11,7 @@ use crate::{Flight, Options};
 /// The maximum length of a line in bytes; longer lines are damaged and skipped.
 const LONGEST_LINE: u64 = 4096;
 
-/// The number of lines before the definitions that are kept, because they contain the name of the firmware.
+/// The maximum number of lines before the definitions that are stored, because they contain the name of the firmware.
 const GREETINGS: usize = 20;
 
 /// Whether one of the first lines defines a message.
@@ -106,7 +106,7 @@ impl Lines<'_> {
         self.collector.message(type_id, Cells::Text(&cells));
     }
 
-    /// `FMT, type, length, name, kinds, label, label, ...`
+    /// Stores the definition in a line `FMT, type, length, name, kinds, label, label, ...`.
     fn define(&mut self, cells: &[&str], bytes: usize) {
         let format = match cells {
             [type_id, length, name, kinds, labels @ ..] if !name.is_empty() => (type_id.parse())

@@ -17,16 +17,18 @@ const FITS_NOT: f64 = 0.2;
 /// A share is clearly larger than another share `s` if it exceeds `s` times the first number plus
 /// the second number.
 const CLEARLY: (f64, f64) = (5.0, 0.002);
-/// The minimum correlation of effort and output of the rate controller for a layout to be right, and the minimum
-/// difference to other layouts. Right layouts have 0.44 to 1, and more than any other.
+/// The minimum correlation of the efforts with the outputs of the rate controllers for a layout to be right. Right
+/// layouts have 0.44 to 1, and more than any other layout.
 const FOLLOWS: f64 = 0.4;
+/// The minimum difference between this correlation of the right layout and that of another layout.
 const FOLLOWS_ABOVE: f64 = 0.2;
 /// The correlation of effort and attitude error up to which a layout may be wrong. Right layouts have 0.0 to 0.9;
 /// well-tuned and slow flights have low values.
 const GOES_WITHOUT: f64 = 0.1;
-/// The correlation from which another layout fits. A lower correlation is enough if it exceeds that of the declared
-/// layout by the second number.
+/// Another layout fits if its correlation of effort and attitude error exceeds this.
 const GOES_WITH: f64 = 0.4;
+/// Another layout also fits if its correlation exceeds the first number, and exceeds that of the declared layout by
+/// more than the second number.
 const GOES_WITH_RATHER: (f64, f64) = (0.25, 0.6);
 
 /// The signals that show whether a layout is right: the outputs of the rate controllers, and the attitude.
@@ -187,8 +189,8 @@ struct Variance {
 }
 
 impl Variance {
-    /// Computes the covariances from a flight. `all_run` excludes the times at which a motor is
-    /// stopped, because it does not follow the mixer then.
+    /// Computes the covariances from a flight. `all_run` excludes the times at which a motor is stopped, because a
+    /// stopped motor does not follow the mixer.
     fn of_commands(flight: &Flight, all_run: bool) -> Option<Self> {
         let motors = flight.motors.len();
         let mut commands = Covariance::new(motors);
@@ -307,7 +309,8 @@ impl Covariance {
         }
     }
 
-    /// The correlation of the effort of an axis with the value of that axis, which is in a column after the commands.
+    /// The correlation of the effort of an axis with the controller output or the attitude error of that axis, which is
+    /// in a column after the commands.
     fn with_effort(&self, factors: &[[f64; 3]], axis: usize) -> Option<f64> {
         if self.count < FEWEST_ROWS {
             return None;

@@ -70,9 +70,9 @@ impl Geometry {
     }
 }
 
-/// The first and last time of the data that is read from every log: the motor commands and the signals of the geometry.
-/// The choice of other signals must not change when the vehicle is armed or in the air. For a log without any of these
-/// data, the time span of all kept signals.
+/// The first and last time of the data that is read from every log, whichever signals are kept: the motor commands and
+/// the signals of the geometry. Other signals are ignored, because the choice of kept signals must not affect when the
+/// vehicle counts as armed or in the air. If a log contains none of these data, the time span of all kept signals.
 pub(crate) fn span_s(flight: &Flight) -> Option<(f64, f64)> {
     let is_read = |series: &&Series| {
         let mut signals = series.signals();

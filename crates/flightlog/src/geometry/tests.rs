@@ -1,11 +1,12 @@
 use crate::{Basis, Flight, Options};
 
-/// A flight CSV with commands computed by a mixer, and an attitude error that its roll and pitch efforts follow.
+/// Reads a flight CSV with commands computed by a mixer, and an attitude error that follows the roll and pitch efforts
+/// of the mixer.
 fn flight(header: &str, mixer: &[[f64; 3]]) -> Flight {
     read(header, mixer, false)
 }
 
-/// The same, with the outputs of the rate controllers or without.
+/// As [`flight`], with or without the outputs of the rate controllers.
 fn read(header: &str, mixer: &[[f64; 3]], with_outputs: bool) -> Flight {
     let mut log = format!("{header}t_s");
     for motor in 1..=mixer.len() {
@@ -84,7 +85,7 @@ fn declared_motors_have_positions() {
 fn the_layout_of_six_and_eight_motors_is_found_by_their_commands() {
     for (frame, found) in [
         ("HEXA/X", "HEXA/X"),
-        // The same space, rotated by 90 degrees.
+        // Both frames span the same space, because one is the other rotated by 90 degrees.
         ("HEXA/PLUS", "HEXA/X"),
         ("HEXA/DJI_X", "HEXA/DJI_X"),
         ("Y6/Y6B", "Y6/Y6B"),
@@ -136,7 +137,7 @@ fn the_outputs_of_the_controllers_name_the_layout() {
             .unwrap();
         assert!(doubt.contains(flown), "{doubt}");
     }
-    // The choice of kept signals makes no difference.
+    // The result does not depend on the choice of kept signals.
     let log = {
         let mut csv = Vec::new();
         read("", &mixer("QUAD/H"), true)

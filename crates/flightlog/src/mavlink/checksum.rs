@@ -6,7 +6,8 @@ pub(crate) fn accumulate(bytes: &[u8], extra: u8) -> u16 {
     let mut eights = bytes.chunks_exact(8);
     let sum = eights.by_ref().fold(0xffff_u16, |sum, eight| {
         let [low, high] = sum.to_le_bytes();
-        // Each byte by itself, followed by zeros in place of the bytes after it: the sum is linear.
+        // The checksum is linear: it is the XOR of the checksums of the single bytes, each followed by as many zeros as
+        // there are bytes after it.
         let first = [low, high, 0, 0, 0, 0, 0, 0];
         let tables = TABLES.iter().rev();
         tables

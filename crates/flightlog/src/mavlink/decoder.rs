@@ -14,9 +14,11 @@ use super::outputs::KnownOutputs;
 
 /// The component id of the autopilot of a system.
 pub(crate) const AUTOPILOT: u8 = 1;
-/// MAV_AUTOPILOT of ArduPilot, of components that are not autopilots, and of PX4.
+/// MAV_AUTOPILOT of ArduPilot.
 const ARDUPILOT: u8 = 3;
+/// MAV_AUTOPILOT of components that are not autopilots.
 const NO_AUTOPILOT: u8 = 8;
+/// MAV_AUTOPILOT of PX4.
 const PX4: u8 = 12;
 /// Flag of HEARTBEAT.base_mode: the motors are armed.
 const ARMED: u8 = 128;
@@ -94,9 +96,9 @@ pub(crate) struct Decoder {
     /// PARAM_VALUE messages that arrived before the type of the autopilot was known: name, value, type.
     waiting: Vec<(String, [u8; 4], u8)>,
     is_armed: bool,
-    /// From HEARTBEAT.system_status.
+    /// Whether the vehicle is active rather than on standby, from HEARTBEAT.system_status.
     is_active: Option<bool>,
-    /// From EXTENDED_SYS_STATE.landed_state.
+    /// Whether the vehicle is in the air, from EXTENDED_SYS_STATE.landed_state.
     is_flying: Option<bool>,
     /// Whether EXTENDED_SYS_STATE ever had a landed state.
     has_landed_state: bool,
@@ -185,7 +187,7 @@ impl Decoder {
             PARAM_VALUE => self.parameter(payload),
             SERVO_OUTPUT_RAW => DecoderChange::Outputs(servo_outputs(payload)),
             AUTOPILOT_VERSION => {
-                // Capabilities, uid, then the version.
+                // The version is in bytes 16 to 19, after the capabilities and the uid.
                 let version = number(payload, 16, NumberType::U32).map(|version| version as u32);
                 self.version = self.version.or(version);
                 let told = || identity::of_version(&payload[8..16], &payload[60..78]);
@@ -203,7 +205,7 @@ impl Decoder {
                 DecoderChange::State
             }
             STATUSTEXT => DecoderChange::Text(text(&payload[1..51])),
-            // The index, system and component of the requester, then the name.
+            // The payload begins with the index, the system and the component of the requester; the name follows.
             PARAM_ERROR => self.parameter_error(text(&payload[4..20]), payload[20]),
             _ => DecoderChange::Nothing,
         }

@@ -172,7 +172,7 @@ pub fn next_packet(bytes: &[u8]) -> PacketScan<'_> {
         Start::Whole(packet) => match packet.sound {
             Some(true) => PacketScan::Packet(packet),
             Some(false) => PacketScan::Skip(1, SkipReason::Checksum),
-            // Its length is credible only if another packet, or nothing, follows.
+            // The length of an unverified packet is credible only if another packet, or nothing, follows.
             None => match bytes.get(packet.bytes.len()) {
                 Some(byte) if !MARKERS.contains(byte) => PacketScan::Skip(1, SkipReason::NoPacket),
                 _ => PacketScan::Unverified(packet),

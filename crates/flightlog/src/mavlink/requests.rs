@@ -18,7 +18,7 @@ pub const MOTOR_RATE_HZ: f64 = 25.0;
 
 /// The requested rate of each message in [`RATED`], in Hz.
 const RATES_HZ: [f64; RATED.len()] = [MOTOR_RATE_HZ, 4.0, 4.0, 2.0, 2.0, 4.0, 4.0, 4.0, 2.0, 2.0];
-/// The old message groups (streams) that contain these messages.
+/// The old message groups (streams) that contain the messages in [`RATED`].
 const STREAMS: [MavDataStream; RATED.len()] = [
     MavDataStream::MAV_DATA_STREAM_RC_CHANNELS,
     MavDataStream::MAV_DATA_STREAM_EXTRA1,
@@ -38,13 +38,14 @@ const LISTEN_S: f64 = 1.0;
 const SLOW_AGAIN: f64 = 0.5;
 /// The time to wait for the requested rate, in seconds.
 const RATE_WAIT_S: f64 = 2.0;
-/// The time to wait after a few requests without effect, in seconds: the link may be slow.
+/// The time to wait after a few requests without effect, in seconds; it is longer, because the link may be slow.
 const RATE_PATIENCE_S: f64 = 15.0;
 /// The maximum packet loss that is compensated for in a measured rate.
 const MOST_LOST: f64 = 0.9;
-/// The time until a parameter is requested again, in seconds, and the number of requests. On a link that loses 3 of 10
-/// packets in each direction, one parameter in a million remains unknown.
+/// The time until a parameter is requested again, in seconds.
 const PARAMETER_WAIT_S: f64 = 0.5;
+/// The number of requests for a parameter. On a link that loses 3 of 10 packets in each direction, one parameter in a
+/// million remains unknown.
 const PARAMETER_TRIES: u32 = 20;
 
 /// Decides what to request, and when to request it again.
@@ -134,8 +135,8 @@ impl Requests {
             return;
         }
         if !is_refused {
-            // As many messages may have arrived just outside the measured time, so that a sufficient rate is never
-            // judged too low.
+            // In the first measurement, one more message is assumed to have arrived just outside the measured time, so
+            // that a sufficient rate is never judged too low.
             let (share, outside) = if self.rate_tries == 0 {
                 (1.0, 1.0)
             } else {
@@ -149,13 +150,13 @@ impl Requests {
             });
             self.has_been_fast |= !self.slow[0];
             self.slow_looks = if self.slow[0] { self.slow_looks + 1 } else { 0 };
-            // The rate dropped within the first slow measurement, which therefore contains commands from before. A
-            // short silence of the link has ended by the next measurement.
+            // The rate is reported after the second slow measurement: the first one also contains commands from before
+            // the drop, and a short silence of the link has ended by the second one.
             if self.slow_looks == 2 && self.has_been_fast {
                 self.slowed_hz = Some(rate_hz(0));
             }
-            // If another station requested a lower rate, the rate is measured first, because
-            // requesting it again would raise it.
+            // If another station requested a lower rate, that rate is measured before a new request, because the
+            // request would raise it.
             let is_asked = telemetry.rate_asker().is_some();
             self.measures = self.slow_looks == 1 && self.has_been_fast && is_asked;
         }
@@ -164,7 +165,7 @@ impl Requests {
             return;
         }
         if !self.slow.contains(&true) {
-            // The next low rate will not mean that the link is slow.
+            // The link is fast enough, so a later low rate is requested again without the long wait for slow links.
             self.rate_tries = 1;
             return;
         }

@@ -151,12 +151,12 @@ fn wanted_of_ardupilot(parameters: &Parameters, vehicle: &Vehicle) -> Vec<String
     let first_known = functions(1..=16).all(|name| parameters.get(&name).is_some());
     let found = ardupilot::motors(parameters, vehicle, field).len();
     if first_known && vehicle.motors.is_some_and(|all| found < usize::from(all)) {
-        // The other motors are then on outputs that only some vehicles have.
+        // Some motors are still unknown, so they are on outputs that only some vehicles have.
         names.extend(functions(17..=32));
     }
     let unset = |name| parameters.get(name).is_some_and(|value| value <= 0.0);
     if unset("MOT_PWM_MIN") || unset("MOT_PWM_MAX") {
-        // The range is then that of the throttle channel.
+        // Without these limits the range is that of the throttle channel.
         names.push("RCMAP_THROTTLE".to_owned());
         if let Some(channel) = parameters.get("RCMAP_THROTTLE") {
             names.extend(["MIN", "MAX"].map(|end| format!("RC{channel}_{end}")));

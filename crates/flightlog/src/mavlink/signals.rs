@@ -6,7 +6,7 @@ use crate::field::{NumberType, NumericField};
 
 /// How a signal is computed from the payload of a message.
 pub(crate) enum SignalSource {
-    /// A number multiplied by a factor; the second number means "unknown".
+    /// A field, the factor by which it is multiplied, and the value of the field that means "unknown".
     Number(NumericField, f64, Option<f64>),
     /// The length of the vector of these fields.
     Length(&'static [NumericField]),
@@ -104,7 +104,7 @@ pub(crate) const SPECS: &[MessageSpec] = &[
         id: 33,
         message: "GLOBAL_POSITION_INT",
         signals: &[
-            // 0 before the first position.
+            // These fields are 0 before the first position.
             (
                 SignalSource::Number(at(4, NumberType::I32), 1e-7, Some(0.0)),
                 "latitude_deg",

@@ -83,8 +83,8 @@ impl Stream {
         self.buffer.extend_from_slice(bytes);
     }
 
-    /// Returns the next packet; `None` until more bytes arrive. Signed packets are counted and skipped; with a key,
-    /// packets that are not genuine are.
+    /// Returns the next packet; `None` until more bytes arrive. Without a key, signed packets are counted and skipped;
+    /// with a key, all packets that are not genuine are.
     ///
     /// A packet with an unknown message is returned as well, for recording. Its [`Packet::sound`] is `None`, because
     /// its checksum cannot be verified.

@@ -20,8 +20,9 @@ const GLOBAL_POSITION_INT: u32 = 33;
 const RC_CHANNELS: u32 = 65;
 const VFR_HUD: u32 = 74;
 const COMMAND_ACK: u32 = 77;
-/// MAV_CMD_SET_MESSAGE_INTERVAL, and the MAV_RESULT of an accepted command.
+/// MAV_CMD_SET_MESSAGE_INTERVAL.
 const SET_MESSAGE_INTERVAL: f64 = 511.0;
+/// MAV_RESULT of an accepted command.
 const ACCEPTED: f64 = 0.0;
 
 const BATTERY_STATUS: u32 = 147;
@@ -42,7 +43,7 @@ pub(super) const RATED: [u32; 10] = [
     GPS_RAW_INT,
     RC_CHANNELS,
 ];
-/// The number of messages that are always requested.
+/// The number of messages at the start of [`RATED`] that are always requested.
 const ALWAYS: usize = 3;
 
 /// The number of ports of SERVO_OUTPUT_RAW. The second port has ArduPilot's outputs from 17 on, and PX4's AUX outputs.
@@ -123,7 +124,7 @@ pub enum TelemetryChange {
 /// }
 /// assert!(matches!(change, TelemetryChange::Commands { t_s } if (t_s - 0.4).abs() < 1e-9));
 ///
-/// // No parameter came, so limits are assumed, and said to be.
+/// // No parameter arrived, so limits are assumed, and `assumed` mentions them.
 /// let setup = telemetry.setup();
 /// assert!(setup.assumed.contains(&"commands from 1000 to 2000 us".to_string()));
 /// let mut commands = [0.0; 4];
@@ -308,8 +309,8 @@ impl Telemetry {
 
     /// Processes a packet that arrived at `now_s` of the receiver's clock; packets of other systems are ignored.
     ///
-    /// A clock that jumps back or ahead is accepted after its old time has been silent for 2 s: a vehicle that reboots
-    /// is silent for that long, while a vehicle whose packets somebody else forges is not.
+    /// A clock that jumps back or ahead is accepted once no packet has continued the old time for 2 s. A vehicle that
+    /// reboots is silent for that long; a vehicle whose packets somebody else forges is not.
     pub fn receive(&mut self, packet: &Packet<'_>, now_s: f64) -> TelemetryChange {
         if packet.system != self.system {
             return TelemetryChange::Nothing;
@@ -431,7 +432,7 @@ impl Telemetry {
         }
         self.outputs[port] = (outputs.pulses_us, true);
         for (pulses, is_new) in &mut self.outputs {
-            // Pulses that were not sent again are unknown.
+            // Pulses that did not arrive again since the previous row are unknown.
             if !std::mem::take(is_new) {
                 *pulses = [u16::MAX; OUTPUTS_A_PORT];
             }

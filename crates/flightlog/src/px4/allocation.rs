@@ -4,7 +4,7 @@
 use crate::geometry::rotor_effects;
 use crate::parameters::Parameters;
 
-/// Roll, pitch and yaw torque, and thrust along z (down).
+/// The number of set points: roll, pitch and yaw torque, and thrust along z (down).
 const AXES: usize = 4;
 /// Contributions to a command smaller than this count as 0, before and after scaling.
 const SMALLEST: f64 = 1e-3;

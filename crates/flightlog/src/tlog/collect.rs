@@ -97,8 +97,7 @@ impl<'o> Collector<'o> {
 }
 
 impl SystemState {
-    /// Processes a message of the system. A row that is dropped because times go back counts as damage, but on the
-    /// vehicle's clock it is a late or repeated packet.
+    /// Processes a message of the system.
     fn message(
         &mut self,
         received_s: f64,
@@ -126,6 +125,7 @@ impl SystemState {
         }
         let mut dropped = timed.dropped;
         for (t_s, outputs) in timed.rows.iter().flatten() {
+            // A time that goes back counts as damage, except on the vehicle's clock: there the packet is late or repeated.
             dropped |= self.servos(*t_s, outputs) && !self.time.is_known();
         }
         report.row(outputs.pulses_us.len(), dropped);

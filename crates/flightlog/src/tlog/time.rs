@@ -6,7 +6,8 @@ use crate::mavlink::decoder::{Payload, ServoOutputs, number};
 
 /// Messages that begin with the milliseconds since boot: ATTITUDE and ATTITUDE_TARGET.
 const BOOT_MS: [u32; 2] = [30, 83];
-/// The time in a message is accepted if it differs by at most this from the time of the previous commands, in seconds.
+/// The time in a message is accepted if it differs by at most this from the time of the latest motor commands, in
+/// seconds.
 const LATE_S: f64 = 5.0;
 
 /// The clock of one vehicle: the clock of its motor commands, interpolated between them with the time of reception.

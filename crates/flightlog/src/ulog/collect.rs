@@ -27,7 +27,7 @@ const COMPUTED: &str = "motor commands computed from torque and thrust set point
 /// Thrust and torque are published together. A thrust older than the torque by more than this, in seconds, does not
 /// belong to the torque.
 const LATE_THRUST_S: f64 = 0.1;
-/// The maximum number of topic announcements; a log of PX4 has some hundreds.
+/// The maximum number of topic announcements; a log of PX4 has a few hundred.
 const MOST_ANNOUNCED: usize = 4096;
 
 pub(super) struct Collector<'o> {
@@ -315,7 +315,7 @@ impl<'o> Collector<'o> {
         flight
     }
 
-    /// Sets the motors, their commands and the range of these.
+    /// Sets the motors, their commands, and the range of the commands.
     fn take_commands(&self, flight: &mut Flight) {
         let count = flight.vehicle.motors;
         let logged = |topic: &'static str| {
@@ -325,7 +325,7 @@ impl<'o> Collector<'o> {
         let topic = "actuator_motors";
         if let Some(outputs) = logged(topic).find(|outputs| outputs.instance == 0) {
             let (motors, range) = px4::actuator_motors(&self.parameters, outputs.in_use() as u16);
-            // A motor that is commanded to stop is NaN there.
+            // In this topic, the command of a motor that must stop is NaN.
             flight.commands = outputs.commands(0..motors.len(), |value| {
                 if value.is_nan() { 0.0 } else { value.into() }
             });

@@ -8,7 +8,7 @@ pub(super) enum SignalSource {
     Field(&'static str, f64),
     /// The length of the vector of these fields.
     Length(&'static [&'static str]),
-    /// As `Field`; 0, which a receiver reports before its first position, is unknown.
+    /// As `Field`, but 0, which a receiver reports before its first position, counts as unknown.
     Position(&'static str, f64),
     /// A field, which is unknown unless the second one is 1.
     If(&'static str, &'static str),

@@ -55,7 +55,7 @@ pub(super) struct Reader<'r, 't> {
     pub(super) blocks: Vec<Block>,
     /// The section that is read, for messages.
     section: String,
-    /// Whether the end of the text was reported; what is missing follows from it.
+    /// Whether the premature end of the text was reported. Missing parts are then not reported as well.
     is_cut_off: bool,
 }
 
@@ -75,7 +75,7 @@ impl<'r, 't> Reader<'r, 't> {
         is
     }
 
-    /// Whether a section ends here. A text that ends before is cut off, which is an error.
+    /// Whether a section ends here, with `keyword`, which is consumed. If the text ended before, an error is reported.
     pub(super) fn ends(&mut self, keyword: &str) -> bool {
         let is_cut_off = self.peek().is_none();
         if is_cut_off {
@@ -212,7 +212,8 @@ impl<'r, 't> Reader<'r, 't> {
         }
     }
 
-    /// Moves to the next section after an error: it begins here, or after the end of this one.
+    /// Moves to the next section after an error: the section that begins here, or the one after the end of the current
+    /// section.
     pub(super) fn resume(&mut self, section: &str) {
         if !self.peek().is_some_and(is_section) {
             self.skip(section);
@@ -248,7 +249,7 @@ impl<'r, 't> Reader<'r, 't> {
             }
         }
         for input in &mut self.draft.model.inputs {
-            // An input that is not fuzzified is used by formulas.
+            // An input without FUZZIFY has no range; only formulas read it.
             if input.low.is_nan() {
                 (input.low, input.high) = (0.0, 1.0);
             }

@@ -127,8 +127,7 @@ impl<'t> Reader<'_, 't> {
             && !self.is_fuzzylite
             && output.variable.terms.iter().all(term::is_number)
         {
-            // The centre of gravity for singletons: degrees are aggregated before they are used as weights of the
-            // positions.
+            // For singletons, FCL aggregates the degrees before they are used as weights of the positions.
             output.defuzzifier = Defuzzifier::Centroid;
         }
         let weighted = words::is_weighted(output.defuzzifier);
@@ -222,7 +221,7 @@ impl<'t> Reader<'_, 't> {
                     _ => "write both ends as numbers: `(0 .. 10)`".into(),
                 };
                 self.draft.error("no-range", first, message, &help);
-                // The range is not also reported as missing.
+                // With a range, the variable does not cause a second error about a missing range.
                 (variable.low, variable.high) = (0.0, 1.0);
                 return true;
             };
@@ -253,7 +252,8 @@ impl<'t> Reader<'_, 't> {
         let (first, last) = (words.first()?, words.last()?);
         let span = self.draft.span(first).start..self.draft.span(last).end;
         let written = self.draft.text.get(span)?;
-        // In an output with computed values it reads the inputs; a degree reads its own variable.
+        // In an output with computed values, a formula reads the inputs. Otherwise it is a degree and reads its own
+        // variable.
         let inputs = self.draft.model.inputs.iter();
         let inputs: Vec<String> = inputs.map(|input| input.name.clone()).collect();
         let inputs: Vec<&str> = inputs.iter().map(String::as_str).collect();

@@ -98,7 +98,7 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<WriteResult, Findin
         }
         let word = draft.word(words::DEFUZZIFIERS, output.defuzzifier, "the defuzzifier");
         draft.line(format!("  METHOD : {word};"));
-        // The sum of singletons weights each rule separately.
+        // Computed values are weighted separately for each rule, which in FCL is the sum.
         let aggregation = match computes {
             true => Aggregation::Sum,
             false => output.aggregation.unwrap_or(model.operators.aggregation),

@@ -89,7 +89,7 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
             break;
         }
         if let Some((variable, spans)) = variable(&mut draft, section, &names, weighted) {
-            // fuzzylite writes Tsukamoto outputs in this way.
+            // fuzzylite writes Tsukamoto outputs as weighted averages of fuzzy sets.
             let defuzzifier = match variable.terms.iter().any(shapes::is_computed) {
                 false if defuzzifier == Defuzzifier::WeightedAverage => Defuzzifier::Tsukamoto,
                 _ => defuzzifier,

@@ -14,7 +14,7 @@ use crate::{
     words,
 };
 
-/// Quotes end a name, and `:` follows a name.
+/// The names that can be written. Quotes would end a name, and a `:` separates a name from what follows.
 const NAMES: NameRules = NameRules {
     is_letter: |c| words::is_printable(c) && !matches!(c, '\'' | '"' | ':'),
     is_first: words::is_printable,

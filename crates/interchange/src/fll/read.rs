@@ -16,7 +16,7 @@ use crate::{
 /// A section and its lines.
 struct Section<'t> {
     kind: SectionKind,
-    /// The name after the word of the section.
+    /// The name after the keyword of the section.
     name: &'t str,
     entries: Vec<Entry<'t>>,
 }
@@ -79,7 +79,7 @@ impl SectionKind {
 }
 
 impl<'t> Section<'t> {
-    /// The value of the last line of a key.
+    /// The value of the last line with this key.
     fn get(&self, key: &str) -> Option<&'t str> {
         let of_key = self.entries.iter().rev().find(|entry| entry.key == key);
         of_key.map(|entry| entry.value)
@@ -135,7 +135,8 @@ fn description(section: &Section<'_>) -> Option<String> {
         .map(str::to_owned)
 }
 
-/// The sections of a text. Lines before the first one, and lines that are not `key: value`, are errors.
+/// The sections of a text. Errors are reported for content before the first section, and for lines that are not `key:
+/// value`, blank or a comment.
 fn sections<'t>(draft: &mut ModelDraft<'t>) -> Vec<Section<'t>> {
     let mut sections: Vec<Section<'t>> = vec![];
     for line in draft.text.lines() {
@@ -156,7 +157,7 @@ fn sections<'t>(draft: &mut ModelDraft<'t>) -> Vec<Section<'t>> {
                 None => "write each line as `key: value`; a comment begins with `#`".into(),
             };
             draft.error("fll-syntax", line, message, &help);
-            // The meaning is clear, so that nothing is reported as missing.
+            // The meaning of the line is clear, so the key is not reported as missing as well.
             if let (Some((key, value)), Some(section)) = (known, sections.last_mut()) {
                 section.entries.push(Entry { key, value });
             }
@@ -245,7 +246,7 @@ fn variable(
     let ends = (draft.number(low)?, draft.number(high)?);
     let (low, high) = draft.range(range, ends, computed);
     let mut variable = Variable::new(section.name, low, high);
-    // Computed values read the inputs; a degree reads its own variable.
+    // A formula of a computed value reads the inputs; a formula of a degree reads its own variable.
     let own = (!computed).then_some(section.name);
     variable.description = description(section);
     for written in section.all("term") {

@@ -44,7 +44,7 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
                 .nth(at.row.saturating_sub(1) as usize)
                 .unwrap_or_default();
             let (message, help) = xml_mistake(&error);
-            // A text that ends too early has no position.
+            // The error for a text that ends too early has no position.
             let part = match error {
                 roxmltree::Error::UnclosedRootNode => {
                     text.trim_end().lines().last().unwrap_or(line)
@@ -58,8 +58,8 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
     let root = document.root_element();
     draft.model.name = attribute(root, "name").unwrap_or("unnamed").to_owned();
     let mut reader = Reader {
-        // In the older form `left` and `right` are the side of the slope, in the standard the side on which the degree
-        // is 1.
+        // In the older form, `left` and `right` name the side of the slope; in the standard, they name the side on
+        // which the degree is 1.
         right_is_high: root.tag_name().namespace() == Some(NAMESPACE),
         aggregations: vec![],
         blocks: vec![],
@@ -112,8 +112,8 @@ const MOST_NAMESPACES: usize = 100;
 /// The maximum depth of nested elements.
 const DEEPEST_ELEMENTS: usize = 256;
 
-/// The position of the first element at which a document exceeds these limits, with the message and the help. It
-/// examines the text before the XML library parses it.
+/// The position of the first element at which a document exceeds these limits, with the message and the help. The text
+/// is examined before the XML library parses it.
 fn too_large(text: &str) -> Option<(&str, String, &'static str)> {
     let mut reader = quick_xml::Reader::from_str(text);
     reader.config_mut().check_end_names = false;

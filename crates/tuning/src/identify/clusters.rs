@@ -1,5 +1,5 @@
-//! Subtractive clustering (Chiu 1994): finds points with many rows around them, in the space of some inputs and the
-//! output.
+//! Subtractive clustering (Chiu 1994): finds points that are surrounded by many rows, in the space of some inputs and
+//! the output.
 
 use fastrand::Rng;
 
@@ -11,17 +11,19 @@ const MOST_ROWS: usize = 600;
 /// The distance around a center within which the potential of other points is reduced, in radii.
 const SQUASH: f64 = 1.25;
 
-/// A point with a potential above this share of the first one is a center; the search ends below the second share.
+/// A point is a center if its potential is above this share of the first center's potential. A point with less potential
+/// is a center only if it is far from the other centers.
 const ACCEPT: f64 = 0.5;
+/// The search ends when the highest potential is below this share of the first center's potential.
 const REJECT: f64 = 0.15;
 
 /// Centers of clusters.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Clusters {
     pub(super) inputs: Vec<usize>,
-    /// For each input the standard deviation of the gaussians around the centers.
+    /// For each input, the standard deviation of the gaussians around the centers.
     pub(super) deviations: Vec<f64>,
-    /// For each cluster a value of each input.
+    /// For each cluster, the value of each input at its center.
     pub(super) centers: Vec<Vec<f64>>,
 }
 

@@ -32,7 +32,7 @@ impl Sums {
         }
     }
 
-    /// Adds a row: the factor of each number, and the truth minus the mean.
+    /// Adds a row. `factors` are the indices and factors of numbers, and `truth` is the truth minus the mean.
     fn add(&mut self, factors: &[(usize, f64)], truth: f64, weight: f64) {
         for (p, a) in factors {
             self.products[*p] += weight * a * truth;
@@ -78,7 +78,7 @@ impl InputScale {
 pub(super) struct Fit<'a> {
     pub(super) structure: &'a Structure,
     pub(super) consequents: Consequents,
-    /// Whether each rule exists.
+    /// For each rule, whether it is used.
     pub(super) kept: &'a [bool],
     /// See [`RIDGE`].
     pub(super) ridge: f64,
@@ -123,7 +123,7 @@ impl Fit<'_> {
         sums
     }
 
-    /// The numbers of each rule: coefficients, then the constant.
+    /// The numbers of each rule: the coefficients, then the constant.
     pub(super) fn numbers(&self, data: &Data) -> Vec<Vec<f64>> {
         let a_rule = self.numbers_a_rule();
         let mean = mean(data);

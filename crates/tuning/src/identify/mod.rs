@@ -125,7 +125,7 @@ const MOST_COLUMNS: usize = 500;
 /// rows.
 ///
 /// # Errors
-/// [`TuneError::TooManyColumns`].
+/// [`TuneError::TooManyColumns`] if there are more columns.
 pub fn check_columns(columns: usize) -> Result<(), TuneError> {
     match columns > MOST_COLUMNS {
         true => Err(TuneError::TooManyColumns {

@@ -79,8 +79,8 @@ fn named_parameters_move_and_fixed_ones_stay() {
         ..Settings::default()
     };
     let parameters = Parameters::new(&model(), &settings).unwrap();
-    // heat.cold touches the end of the range and heat.hot is fixed, so one peak can change. For food.d, the mean and
-    // the deviation.
+    // heat.cold touches the end of the range and heat.hot is fixed, so one peak can change. In food.d, the mean and the
+    // deviation can change.
     assert_eq!(parameters.free(), 3);
     let moved = crate::numbers::moved(&model(), &parameters.model(&[1.0; 3]));
     let mut named: Vec<String> = moved

@@ -35,8 +35,8 @@ pub(crate) struct Change {
 /// The size of a group of rules above which only neighbours are merged, not all subsets.
 const MOST_FOR_ALL_SUBSETS: usize = 6;
 
-/// The changes that make rules shorter, largest reduction first. With `loose`, if outputs may change, also merges of
-/// rules with different consequents and weights.
+/// The changes that make rules shorter, largest reduction first. If `loose`, outputs may change, so rules with
+/// different consequents and weights are merged as well.
 pub(crate) fn changes(model: &Model, slots: &RuleSlots, loose: bool) -> Vec<Change> {
     let found = Finder {
         model,
@@ -85,7 +85,7 @@ struct Member<'a> {
 }
 
 impl Finder<'_> {
-    /// Adds the removal of rules and of parts of rules, which may have no effect.
+    /// Adds the changes that remove a rule or a part of a rule, in case it has no effect.
     fn drops(&self, changes: &mut Vec<Change>) {
         // Of two equal rules, the first is kept.
         for (slot, derived, parts) in self.rules.iter().rev() {
@@ -113,8 +113,8 @@ impl Finder<'_> {
         }
     }
 
-    /// Adds the removal of a variable from all rules. Of rules that are equal afterwards, the one with the largest
-    /// support replaces the others.
+    /// Adds the change that removes a variable from all rules. Of rules that are equal afterwards, the one with the
+    /// largest support replaces the others.
     fn without_variable(&self, name: &str, changes: &mut Vec<Change>) {
         /// The position and the rule, and its parts without the variable.
         type Group<'a> = Vec<(usize, &'a DerivedRule, Vec<VariableCondition>)>;
@@ -179,13 +179,13 @@ impl Finder<'_> {
         changes.push(change);
     }
 
-    /// Adds the merging of rules that differ only in their condition on one variable.
+    /// Adds the changes that merge rules that differ only in their condition on one variable.
     fn merges(&self, name: &str, loose: bool, changes: &mut Vec<Change>) {
         let Some(variable) = variable(self.model, name) else {
             return;
         };
         let all: BTreeSet<usize> = (0..variable.terms.len()).collect();
-        // Grouped by their conditions on the other variables.
+        // The rules are grouped by their conditions on the other variables.
         let mut groups: BTreeMap<String, Vec<Member<'_>>> = BTreeMap::new();
         for (slot, derived, parts) in &self.rules {
             let Some(parts) = parts else { continue };

@@ -1,7 +1,7 @@
 //! Simplifies rule sets: fewer and shorter rules and fewer inputs, with the same outputs.
 //!
-//! Equality of outputs is not derived but tested, by evaluating both rule sets at many points. So it works with every
-//! operator, but is guaranteed only at these points.
+//! Equality of outputs is not derived but tested, by evaluating both rule sets at many points. The test works with
+//! every operator, but guarantees equality only at these points.
 
 mod antecedent;
 mod change;
@@ -77,7 +77,7 @@ pub enum SimplifyError {
         /// The tolerance.
         tolerance: f64,
     },
-    /// [`SimplifySettings::rows_only`] without rows.
+    /// [`SimplifySettings::rows_only`] is set, but there are no rows.
     #[error("there are no rows")]
     NoRows,
     /// There is not exactly one column for each input, or the columns have different lengths.
@@ -227,7 +227,8 @@ pub fn simplify(
     })
 }
 
-/// The disjunctions to try: other than the author's only if no rule contains an OR whose meaning would change.
+/// The disjunctions to try. Others than the author's are tried only if no rule contains an OR, whose meaning would
+/// change.
 fn disjunctions(model: &Model) -> Vec<Disjunction> {
     let own = model.operators.or;
     let mut found = vec![own];
@@ -282,8 +283,8 @@ fn without_difference(model: &Model, reference: &mut ReferenceOutputs, slots: &m
     }
 }
 
-/// Applies changes that reduce rules or inputs as long as one stays within the tolerance; each time, the one with the
-/// smallest difference for its reduction.
+/// Applies changes that reduce the number of rules or inputs, until every further change would exceed the tolerance.
+/// The change with the smallest difference per removed proposition is always next.
 fn within_tolerance(model: &Model, reference: &mut ReferenceOutputs, slots: &mut RuleSlots) {
     let mut failed: HashSet<String> = HashSet::new();
     loop {

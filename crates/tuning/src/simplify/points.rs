@@ -68,7 +68,8 @@ pub(crate) fn points(model: &Model, seed: u64) -> Vec<Vec<f64>> {
 fn bends(input: &Variable) -> Vec<f64> {
     let of_term = |term: &Term| match term.membership_function.corners() {
         Some(corners) => corners.iter().map(|(x, _)| *x).collect::<Vec<f64>>(),
-        // Curved shapes have no corners; their highest points and their widths are used instead.
+        // Curved shapes have no corners. Their parameters, and the sums and differences of two parameters, are used
+        // instead: these include the highest point and points one width away from it.
         None => {
             let parameters = term.membership_function.parameters();
             let numbers = parameters.iter().map(|(.., value)| *value);

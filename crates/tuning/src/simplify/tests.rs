@@ -23,7 +23,8 @@ fn rules(model: &Model) -> Vec<String> {
     rules.map(|rule| rule.rule.to_string()).collect()
 }
 
-/// Two inputs of three terms; the consequents row by row, `-` for no rule.
+/// A rule set with two inputs of three terms. `consequents` lists the output term for each combination, row by row; `-`
+/// means no rule.
 fn table(operators: &str, consequents: &str) -> Model {
     let names = ["low", "middle", "high"];
     let mut text = format!(
@@ -51,8 +52,8 @@ rules:
 
 const SUMS: &str = "and: product, implication: product, aggregation: sum";
 
-/// The risk of a multirotor from the present and recent unsteadiness of its motors, its load and its limits: learned,
-/// 28 rules.
+/// A learned risk of a multirotor with 28 rules. Its inputs are how unsteady the motors are now and were recently,
+/// their load, and how often they are at a limit.
 fn risk() -> Model {
     let mut text = String::from(
         "
@@ -286,8 +287,8 @@ fn wrong_settings_and_models_are_errors() {
     assert!(matches!(none, Err(SimplifyError::Compile(_))), "{none:?}");
 }
 
-/// A model of up to three inputs: a table of rules with few consequents, some of them missing, duplicated, weighted or
-/// of another form.
+/// A model with up to three inputs: a table of rules with few different consequents. Some rules are missing,
+/// duplicated, weighted, or have another form.
 fn random_model(seed: u64) -> Model {
     let mut random = fastrand::Rng::with_seed(seed);
     let mut one_of = |words: &[&'static str]| *random.choice(words).unwrap();

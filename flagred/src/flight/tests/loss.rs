@@ -89,7 +89,7 @@ proptest! {
         });
         let is_of_motor = matches!(hidden.verdict, Verdict::NotAvailable(Reason::MotorUnknown { .. }));
         prop_assert!(is_of_motor, "{:?}", hidden.verdict);
-        // Once, for less than a sixteenth of the time: enough is known for a verdict.
+        // A single loss of less than a sixteenth of the time does not prevent a verdict.
         let calm = in_trouble(&estimator, &QUAD_X, HOVER, |t_s, motors| {
             if (20.0..20.0 + once_s).contains(&t_s) {
                 motors[motor] = f64::NAN;
@@ -140,9 +140,9 @@ fn samples_that_are_ignored_for_their_times_are_a_reason_for_no_verdict() {
     let ignored = "200 samples in the air were ignored: their times are unknown or go back";
     assert_eq!(around(|_| f64::NAN), ignored);
     assert_eq!(around(|i| 19.0 + f64::from(i % 20) * 0.04), ignored);
-    // Two samples at the same time.
+    // Samples at the same time as the one before are not ignored.
     assert_eq!(around(|_| 19.96), "GOOD");
-    // Too far back to be the rest of the same flight: a new flight.
+    // A time that goes far back begins a new flight.
     let mut assessor = Assessor::new(&shipped::flagred(), Craft::new(4), None).unwrap();
     for i in 0..1000 {
         let t_s = f64::from(if i < 500 { i } else { i - 250 }) * 0.04;

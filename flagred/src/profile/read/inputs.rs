@@ -1,4 +1,4 @@
-//! Reads the inputs of a profile: statistics over time, of a signal or of a statistic over its motors.
+//! Reads the inputs of a profile: statistics over time of a signal, or of a signal combined over the motors.
 
 use alloc::{format, string::String, vec::Vec};
 

@@ -114,7 +114,7 @@ pub(super) fn level(
     }
 }
 
-/// The number that an author wrote in place of a mapping, for its example; else another number.
+/// The number for an example of a mapping: the number that the author wrote in place of the mapping, or else `other`.
 fn number_or<'n>(node: &'n Node, other: &'n str) -> &'n str {
     node.as_number_text().unwrap_or(other)
 }

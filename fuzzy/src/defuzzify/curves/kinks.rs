@@ -132,7 +132,7 @@ impl Cuts<'_> {
     fn each_stretch(&mut self, mut visit: impl FnMut(&mut Self, (f64, f64))) {
         for i in 1..self.cuts.len() {
             if let (Some(&a), Some(&b)) = (self.cuts.get(i - 1), self.cuts.get(i)) {
-                // Beyond a step at the cut.
+                // Positions just inside the interval, beyond a step at one of its ends.
                 let inside = INSIDE * (b - a);
                 self.between = (a.next_up().max(a + inside), b.next_down().min(b - inside));
                 visit(self, (a, b));
@@ -149,7 +149,7 @@ impl Cuts<'_> {
         }
     }
 
-    /// Adds a cut at the sign change of a function, which may be a straight line.
+    /// Adds a cut where a function changes its sign, if it does. `is_line` states whether it is a straight line.
     fn at_sign_change(&mut self, f: impl Fn(f64) -> f64, is_line: bool) {
         let (a, b) = self.between;
         let (fa, fb) = (f(a), f(b));

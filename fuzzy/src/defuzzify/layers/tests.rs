@@ -23,7 +23,7 @@ fn centroid_between_bends((low, high): (f64, f64), terms: &[([f64; 3], f64)]) ->
             bends.extend([left + h * (peak - left), right - h * (right - peak)]);
         }
         for ([other, top, end], _) in terms {
-            // Finds the crossing of a flank through (a, 0) with the width w, and one through (b, 0) with the width v.
+            // Adds the crossing of two flanks: one through (a, 0) with the width w, one through (b, 0) with the width v.
             for (a, w) in [(left, peak - left), (right, peak - right)] {
                 for (b, v) in [(other, top - other), (end, top - end)] {
                     bends.push((b * w - a * v) / (w - v));

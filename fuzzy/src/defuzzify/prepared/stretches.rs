@@ -80,7 +80,7 @@ pub(super) const LEVEL: f64 = 4e-16;
 pub(super) fn curved(term: &Term, low: f64, high: f64) -> Vec<Stretch> {
     let f = |x: f64| term.membership(x);
     let cuts = monotone(&term.membership_function, low, high);
-    // Just inside, beyond a step at the cut.
+    // Returns the degree just inside the stretch, beyond a step at the cut.
     let inside = |x: f64, next: f64| {
         let (here, there) = (f(x), f(next));
         if libm::fabs(here - there) > 1e-9 {
@@ -138,7 +138,7 @@ pub(super) fn knots(flank: &Flank, cuts: &[f64], measure: Measure) -> Option<Vec
     };
     let mut knots = vec![foot];
     let mut sum = foot;
-    // A stack; the stretch next to the foot is on top.
+    // A stack of intervals; the one next to the foot is on top.
     let mut open: Vec<(f64, f64)> = cuts
         .iter()
         .zip(cuts.iter().skip(1))
@@ -164,7 +164,7 @@ pub(super) fn knots(flank: &Flank, cuts: &[f64], measure: Measure) -> Option<Vec
         if error <= 4e-15 * known || libm::fabs(b - a) <= narrowest {
             add(b, whole);
         } else if error <= 1e-11 * known {
-            // The error of the parts is 0.57^16 of that.
+            // The error of the two parts is 0.57^16 of the error of the whole.
             add(middle, left);
             add(b, right);
         } else {

@@ -21,8 +21,7 @@ fn values(engine: &Engine, inputs: &[f64]) -> Vec<Option<f64>> {
     outcomes.iter().map(|outcome| outcome.value()).collect()
 }
 
-/// A partition, and triangles and rectangles with simple areas and centres. The output of the later stage is listed
-/// first.
+/// A chain of two outputs, whose terms have simple areas and centres. The output of the later stage is listed first.
 const FAN: &str = "
 fuzzy: 1
 name: fan
@@ -174,7 +173,7 @@ fn a_cycle_is_refused_with_its_path() {
     );
 }
 
-/// A model over `inputs` with conclusions about one output.
+/// Generates models over `inputs` with conclusions about one output.
 fn any_stage(
     inputs: &'static [&'static str],
     output: &'static str,

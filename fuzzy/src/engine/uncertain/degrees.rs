@@ -11,11 +11,11 @@ use crate::rule::Hedge;
 pub(super) struct RangedLiteral {
     /// The index of the input.
     pub(super) input: usize,
-    /// `None` for `any` without a term.
+    /// The term; `None` for `any` without a term.
     term: Option<Term>,
     lower_cuts: Vec<f64>,
     upper_cuts: Vec<f64>,
-    /// In the order in which they are applied.
+    /// The hedges, in the order in which they are applied.
     hedges: Vec<Hedge>,
 }
 
@@ -75,7 +75,8 @@ impl RangedLiteral {
     }
 }
 
-/// Returns the positions of extrema and steps, and their neighbours, which have the limits at a step.
+/// Returns the positions of extrema and steps, and their neighbouring numbers, at which the degrees at a step are the
+/// limits from both sides.
 fn cuts(function: &MembershipFunction) -> Vec<f64> {
     let cuts = function.cuts().into_iter();
     cuts.flat_map(|x| [x.next_down(), x, x.next_up()]).collect()

@@ -9,7 +9,7 @@ use crate::model::Formula;
 pub(super) struct Span {
     pub(super) low: f64,
     pub(super) high: f64,
-    /// Whether a value may not be a finite number.
+    /// Whether some values may be NaN or infinite.
     pub(super) may_be_undefined: bool,
 }
 
@@ -63,7 +63,7 @@ pub(super) fn range(formula: &Formula, variable: impl Fn(&str) -> Span) -> Span 
 
 fn of_one(word: &str, x: Span) -> Span {
     let monotone = |f: fn(f64) -> f64| Span::of(&[f(x.low), f(x.high)], x.may_be_undefined);
-    // Undefined below `least` or above `most`.
+    // A monotone function that is undefined below `least` and above `most`.
     let partial = |f: fn(f64) -> f64, least: f64, most: f64| {
         if x.high < least || x.low > most {
             return Span::ALL;

@@ -34,14 +34,15 @@ const MOST_BOXES: usize = 400;
 /// curved terms; all other rule sets stay far below it.
 const MOST_STEPS: u64 = 20_000_000;
 
-/// The distance of a bound from a value that occurs at which the search ends, as a share of the interval of all such
-/// values.
+/// The search for a bound ends when a value that occurs is this close to it, as a share of the interval of all values
+/// that occurred.
 const CLOSE: f64 = 0.005;
 
-/// The distance that is added to both ends for rounding, relative to the range of the output or to the end.
+/// The distance by which both ends are moved outwards because of rounding, relative to the width of the output's range
+/// or to the end itself, whichever is larger.
 const ROUNDING: f64 = 1e-10;
 
-/// The maximum number of uncertain inputs of which all corners are evaluated.
+/// The maximum number of uncertain inputs for which all corners are evaluated.
 const MOST_CORNERS: usize = 4;
 
 /// An interval of numbers.
@@ -74,7 +75,7 @@ impl Interval {
         Interval::new(value - half_width, value + half_width)
     }
 
-    /// Returns the distance of the ends.
+    /// Returns the distance between the ends.
     #[must_use]
     pub fn width(self) -> f64 {
         self.high - self.low
@@ -111,9 +112,9 @@ impl From<f64> for Interval {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct IntervalOutcome {
-    /// An interval that contains the value of the output for all values of the inputs in their intervals, and with
-    /// interval type-2 terms also its interval for each of them. An end is infinite if a formula has no bound. `None`
-    /// if the output has no value for any of these inputs.
+    /// An interval that contains the values of the output for all inputs in their intervals. With interval type-2 terms,
+    /// it also contains the interval of the output for each of these inputs. An end is infinite if a formula has no
+    /// bound. `None` if the output has no value for any of these inputs.
     pub values: Option<Interval>,
     /// Whether the output may have no value for some of these inputs, because no rule fires.
     pub may_be_undefined: bool,
@@ -150,7 +151,7 @@ struct Search<'s> {
     known: Vec<OutputBounds>,
     engine: Scratch,
     outcomes: Vec<Outcome>,
-    /// The smallest and the largest value of each output that occurred.
+    /// For each output, the smallest and the largest value that occurred so far.
     inner: Vec<Option<Interval>>,
 }
 
@@ -159,7 +160,8 @@ struct Search<'s> {
 struct Part {
     inputs: Vec<Interval>,
     known: OutputBounds,
-    /// The bound that matters, with the sign of its end: the part with the largest one is divided first.
+    /// How far out the bound of the searched end is, as [`End::of`] returns it. The part with the largest urgency is
+    /// divided first.
     urgency: f64,
     scores: Vec<f64>,
 }
@@ -192,7 +194,7 @@ enum End {
 }
 
 impl End {
-    /// Returns how far out the end of an interval is.
+    /// Returns how far out this end of an interval is: the upper end, or the negated lower end.
     fn of(self, values: Option<Interval>) -> f64 {
         match (values, self) {
             (None, _) => f64::NEG_INFINITY,
@@ -382,7 +384,7 @@ impl Search<'_> {
         let inputs_of_engine = self.enclosure.engine.inputs.iter();
         for ((score, input), range) in scores.iter_mut().zip(&inputs).zip(inputs_of_engine) {
             *score = match input.width() > 1e-12 * (range.high - range.low) {
-                // Linear functions and formulas read the value itself.
+                // The width counts too, because linear functions and formulas read the value and not a degree.
                 true => *score + 0.1 * input.width() / (range.high - range.low),
                 false => 0.0,
             };
@@ -474,7 +476,7 @@ impl Search<'_> {
         all
     }
 
-    /// Moves the ends outwards by the largest error of rounding, but not out of the range of an output with `clamp`.
+    /// Moves the ends outwards by the largest rounding error, but not out of the range of an output with `clamp`.
     fn rounded(&self, output: usize, values: Interval) -> Interval {
         let output = self.enclosure.engine.model.outputs.get(output);
         let (low, high) = output.map_or((0.0, 0.0), |output| {

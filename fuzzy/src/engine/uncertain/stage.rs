@@ -28,7 +28,7 @@ pub(super) struct RangedStage {
     reads: Vec<usize>,
     /// The indices in the model of the outputs of the stage.
     outputs: Vec<usize>,
-    /// The ranges of its inputs.
+    /// The ranges of the inputs of the stage.
     ranges: Vec<Interval>,
     literals: Vec<RangedLiteral>,
     rules: Vec<RangedRule>,
@@ -49,10 +49,11 @@ struct RangedRule {
 #[derive(Debug, Clone)]
 struct RangedOutput {
     enclosing: EnclosureMethod,
-    /// The first firing strength, and the offset of each term from it.
+    /// The index of the first firing strength.
     first: usize,
+    /// The offset of each term's firing strengths from the first one.
     offsets: Vec<usize>,
-    /// The number of each term of a Takagi-Sugeno output.
+    /// The constant, linear function or formula of each term; empty unless it is a Takagi-Sugeno output.
     numbers: Vec<MembershipFunction>,
     when_no_rule_fires: NoRuleFires,
     range: Interval,
@@ -225,7 +226,7 @@ impl RangedStage {
         }
     }
 
-    /// Adds to the score of each input the change of the degrees that read it.
+    /// Increases the score of each input by how much the degrees of its terms vary.
     pub(super) fn scores(&self, scratch: &RangedScratch, scores: &mut [f64]) {
         for (literal, (low, high)) in self.literals.iter().zip(&scratch.degrees) {
             if let Some(score) = scores.get_mut(literal.input) {
@@ -472,8 +473,8 @@ impl RangedOutput {
     }
 }
 
-/// Returns a model whose fuzzy outputs have singletons in place of their terms, so that its firing strengths are combined
-/// only as far as the operators allow for any membership functions.
+/// Returns a model whose fuzzy outputs have singletons in place of their terms. Its firing strengths are therefore
+/// combined only if the operators allow it for all membership functions.
 fn without_sets(model: &Model) -> Model {
     let mut changed = model.clone();
     for output in &mut changed.outputs {

@@ -36,7 +36,7 @@ fn a_straight_line_has_the_values_at_its_ends() {
         "{low} {high}"
     );
     assert!(!values.may_be_undefined && !values.clamped);
-    // A point has its value.
+    // If all intervals are points, the interval of the output is its value.
     let value = engine.evaluate(&[13.0, 0.0]).unwrap()[0].value().unwrap();
     let point = of(&engine, 13.0.into(), 0.0.into());
     assert_eq!(point.values, Some(value.into()));

@@ -1,4 +1,4 @@
-//! Single evaluations of small rule sets with two inputs, of which at most two terms each overlap. This is the most
+//! Single evaluations of small rule sets with two inputs, if at most two terms of each input overlap. This is the most
 //! common kind.
 //!
 //! The intervals of the two inputs divide their plane into regions. In each region two terms of either input can be
@@ -211,7 +211,7 @@ fn right_of<S: Simd>(simd: S, heights: f64x4<S>) -> f64x4<S> {
     four(simd, &[b, c, d, 0.0])
 }
 
-/// Returns the sum, added in the order of the slots.
+/// Returns the sum of the four numbers, added from the first to the last.
 #[inline(always)]
 fn sum<S: Simd>(numbers: f64x4<S>) -> f64 {
     let [a, b, c, d] = numbers.to_array();

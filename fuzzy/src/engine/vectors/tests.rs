@@ -14,7 +14,8 @@ use crate::table::{PartialConjunction, Scratch, StrongestRule};
 
 const TERMS: [&str; 4] = ["a", "b", "c", "d"];
 
-/// All rules of inputs with four terms each. Weights repeat and are sometimes 0; `seed` selects the conclusions.
+/// Returns a model whose inputs have four terms each, with a rule for each combination. Weights repeat and are sometimes
+/// 0; `seed` selects the conclusions.
 fn model(inputs: usize, kind: usize, multiplies: bool, weights: &[u8], seed: usize) -> Model {
     let mut power = Variable::new("y", -3.0, 7.0);
     if kind == 3 {

@@ -57,7 +57,7 @@ pub(super) fn list(description: &str, items: Node, least: Option<usize>) -> Node
     Node::mapping(entries)
 }
 
-/// Returns the schema of a list with a number of numbers.
+/// Returns the schema of a list of `count` numbers.
 pub(super) fn numbers(description: &str, count: usize) -> Node {
     let count = || Node::number(count as f64);
     about(

@@ -44,7 +44,7 @@ impl SetArrays<'_> {
                     right -= part.area;
                 }
             });
-            // By rounding, the value lies between two parts.
+            // Because of rounding, no part may contain the value, which is then between two parts.
             return value.or(Some(section.to));
         }
         self.sections.last().map(|section| section.to)
@@ -132,7 +132,7 @@ impl SetArrays<'_> {
         Some(self.newton((output.low, output.high), rest, degree))
     }
 
-    /// Returns the area to the left of `x` of a flank that is cut or scaled, as if no other were present.
+    /// Returns the area to the left of `x` of a flank that is cut or scaled, as if it were the only one.
     fn area_up_to(&self, flank: &Flank, strength: f64, x: f64) -> f64 {
         if x <= flank.from {
             return 0.0;

@@ -7,8 +7,8 @@ use crate::table::operators::{larger, smaller};
 impl SetArrays<'_> {
     /// Returns the smallest, the mean or the largest value at which the aggregated maximum is highest.
     pub(super) fn maxima(&self, which: OfMaxima, strengths: &[f64]) -> Option<f64> {
-        // The degree of the unscaled term at which it counts as highest. A strength that equals its maximum degree up
-        // to rounding does not cut it.
+        // The degree of the term, before cutting or scaling, from which a value counts as highest. A strength that
+        // equals the maximum degree of the term up to rounding does not cut the term.
         let level = |term: &SetTerm, strength: f64| {
             if self.scales || strength >= term.highest * (1.0 - TIE) {
                 term.highest
@@ -16,7 +16,7 @@ impl SetArrays<'_> {
                 strength
             }
         };
-        // The same degree after cutting or scaling.
+        // The maximum degree of the term after cutting or scaling.
         let top = |term: &SetTerm, strength: f64| {
             if self.scales {
                 strength * term.highest
@@ -55,7 +55,7 @@ impl SetArrays<'_> {
 const TIE: f64 = 1e-12;
 
 /// The values of a section at which terms are highest: from its lower end to `left`, from `right` to its upper end, and
-/// at its ends.
+/// the ends themselves if they are flagged.
 struct Spans {
     left: f64,
     right: f64,
@@ -121,11 +121,13 @@ impl Spans {
 pub(crate) struct Maxima {
     smallest: Option<f64>,
     largest: f64,
-    /// The total length of all plateaus, and the mean of the values on them.
+    /// The total length of all plateaus.
     length: f64,
+    /// The mean of the values on plateaus.
     mean_of_plateaus: f64,
-    /// The number of single points, and their mean.
+    /// The number of single points.
     points: f64,
+    /// The mean of the single points.
     mean_of_points: f64,
 }
 

@@ -23,7 +23,7 @@ def alerts(changes: Sequence[Change], least_pct: float) -> list[Change]:
 
 
 def key(change: Change) -> str:
-    """Identifies a change in the next run, which may date it slightly differently."""
+    """An identifier of a change without its date, because the next run may date the same change slightly differently."""
     who = "fleet" if change.is_fleet else change.vehicles[0]
     return f"{who}: {change.kind} {change.cause or ('of a week' if change.is_fleet else '')}".strip()
 

@@ -192,8 +192,8 @@ class _Transaction:
 
 
 def _rows(out: Place, path: str) -> tuple[list[tuple[Any, ...]], list[str], DamagedError | None]:
-    """The columns of a file's flights for the catalog, the tables without a file of this name, and the error of a damaged one.
-    Compaction bounds the number of flights in a file."""
+    """Returns the flights in a file as rows for the catalog, the tables that lack a file of this name, and the error if such a
+    file is damaged. Compaction bounds the number of flights in a file."""
     with parquet(out, path) as file:
         version = (file.schema_arrow.metadata or {}).get(b"flagred.fleet", b"none").decode()
         if version != VERSION:

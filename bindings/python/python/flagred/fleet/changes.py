@@ -1,4 +1,5 @@
-"""Changes of the risk: of the whole fleet by a firmware, a part or a week, and of single vehicles, as a step or a trend.
+"""Changes of the risk: in the whole fleet, with a new firmware, a new part or from a week on; and in single vehicles, as a
+step or a trend.
 
 Each vehicle is compared with itself. P values are those of permutation tests that shuffle the days of each vehicle,
 adjusted for all tests of the fleet by the maximum statistic of Westfall and Young.
@@ -39,7 +40,7 @@ MEAN, HIGHEST, WARNED = range(len(MEASURES))
 
 @dataclass(frozen=True)
 class Change:
-    """A change of the risk that is statistically significant. Differences are between flights at equal wind and time in the
+    """A change of the risk that is statistically significant. All differences are adjusted to equal wind and equal time in the
     air."""
 
     kind: Literal["step", "slope"]
@@ -53,7 +54,7 @@ class Change:
     vehicles: tuple[str, ...]
     """The vehicles in which it was found."""
     since_s: float
-    """The first flight after a step, or the first of a slope, in seconds since 1970."""
+    """The time of the first flight after a step, or of the first flight of a slope, in seconds since 1970."""
     measure: str
     """The measure with the clearest change: ``risk_mean_pct``, ``risk_max_pct`` or ``warned_pct``."""
     change_pct: float
@@ -70,7 +71,7 @@ class Change:
     warned_pct: tuple[float, float]
     """The share of flights that warned, before and after; for a slope, in its first and last third."""
     others: tuple[float, float, float] | None
-    """The change of the vehicles without the cause at the same time, with the interval; None if too few flew."""
+    """The simultaneous change of the vehicles that do not have the cause, with its interval; None if too few of them flew."""
 
 
 def find_changes(connection: Any, parts: Mapping[str, Sequence[tuple[float, str]]] | None = None, level: float = LEVEL) -> list[Change]:
@@ -124,7 +125,7 @@ class _Split:
 
 
 Splits = dict[tuple[float, str | None], list[_Split]]
-"""For each change (its first flight, only for weeks, and its name), the split of each vehicle."""
+"""For each change, the split of each vehicle. The key is (0, name) for a firmware or part, and (start, None) for a week."""
 
 
 def _by_mark(fleet: Sequence[History], parts: dict[str, list[tuple[float, str]]]) -> Splits:
@@ -143,7 +144,7 @@ def _by_mark(fleet: Sequence[History], parts: dict[str, list[tuple[float, str]]]
 
 
 def _by_week(fleet: Sequence[History]) -> Splits:
-    """Each week in which at least three vehicles have days on both sides."""
+    """The splits at the start of each week, if at least three vehicles have enough days before and after it."""
     if not fleet:
         return {}
     last = max(history.start_s[-1] for history in fleet)
@@ -163,7 +164,7 @@ def _by_week(fleet: Sequence[History]) -> Splits:
 def _of_fleet(
     splits: Splits, fleet: Sequence[History], shuffles: int, chance: np.random.Generator, level: float
 ) -> list[tuple[Change, list[_Split]]]:
-    """The significant changes with their days; of weeks, only the one with the clearest change."""
+    """The significant changes, each with its splits. If the splits are weeks, only the clearest change is returned."""
     if not splits:
         return []
     sums = {key: Sum(shuffles + 1, len(of)) for key, of in splits.items()}
@@ -240,7 +241,7 @@ def _pooled(splits: Sequence[_Split], measure: int) -> tuple[float, float, float
 
 
 def _without(fleet: Sequence[History], explained: Sequence[Sequence[_Split]]) -> list[History]:
-    """The fleet without the found steps, each with the mean size over its vehicles."""
+    """The fleet without the effect of the found steps: from each step on, its mean size over its vehicles is subtracted."""
     values = {history.vehicle: history.values.copy() for history in fleet}
     for splits in explained:
         rise = np.array([_pooled(splits, measure)[0] for measure in range(len(MEASURES))])
@@ -265,8 +266,8 @@ def _of_vehicles(
 
 
 def _vehicle_scores(history: History, shuffles: int, chance: np.random.Generator) -> Reals:
-    """The best of all steps and the slope, by shuffling and measure, as standard normal scores. Only for means and highest
-    risks: a few flights of one vehicle that warned are too coarse."""
+    """How well the best step or the slope explains the risk, as standard normal scores for each shuffling and measure. The
+    measures are the mean and the highest risk; the share of flights that warned is too coarse for a single vehicle."""
     values = history.values[:, :WARNED]
     n = len(values)
     total = shuffled(values, shuffles, chance)

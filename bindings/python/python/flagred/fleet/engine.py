@@ -25,7 +25,7 @@ from .takeover import Superseded
 __all__ = ["cluster", "cores", "run"]
 
 MOST_WORKER_BYTES = 2 << 30
-"""The memory limit of a local worker; one that exceeds it is killed, and its log is found."""
+"""The memory limit of a local worker in bytes. A worker that exceeds it is killed, and its log is recorded as crashed."""
 TRIES = 2
 """How often a shard may kill its local worker before it is split."""
 RETRIES = 2
@@ -40,7 +40,7 @@ POLL_S = 0.05
 @contextmanager
 def cluster(scheduler: str | None, workers: int | None) -> Iterator[Client]:
     """A client of a running cluster, or of a local one that starts and ends with it."""
-    # For a local cluster: how many workers a task may kill, and no time-out for workers that ended and restart.
+    # For a local cluster: limits how many workers a task may kill, and disables the time-out for workers that restart.
     settings = {"distributed.scheduler.allowed-failures": TRIES - 1, "distributed.deploy.lost-worker-timeout": "1d"}
     with dask.config.set(settings):
         if scheduler is not None:
@@ -73,9 +73,9 @@ def cores(client: Client) -> int:
 def run(client: Client, shards: Iterator[Shard], job: Job, wait: Callable[[int], None]) -> Iterator[Outcome]:
     """Yields the outcome of each shard when it is known. Only some shards are submitted at a time.
 
-    A shard that repeatedly kills its worker is split in halves after all others are done, and so is the half that still
-    does, until one log is left, which is recorded as crashed. Only one shard is then submitted at a time, so that no
-    other is blamed.
+    A shard that repeatedly kills its worker is split in halves after all other shards are done. A half that still kills
+    its worker is split again, until one log is left, which is recorded as crashed. Only one shard is then submitted at a
+    time, so that no other shard is blamed.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def _under_way(
             continue
         for future in finished:
             if future.status in ("pending", "lost"):
-                # Its worker ended before the outcome was fetched: the shard is submitted again.
+                # The worker ended before the outcome was fetched, so the shard is submitted again.
                 done.add(future)
             else:
                 yield waiting.pop(future), _result(future)
@@ -156,7 +156,7 @@ class _Attendance:
             self._complete_s = now_s
         if now_s - self._complete_s > LONGEST_RESTART_S:
             self._complete_s = now_s
-            # A starting worker is not closed: its end would be blamed on the log that it reads by then.
+            # A worker that is still starting is not closed: by then it may read a log, which would be blamed for its end.
             for name, watcher in list(here.workers.items()):
                 if not watcher.is_alive():
                     del here.workers[name]

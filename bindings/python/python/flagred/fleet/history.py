@@ -14,7 +14,7 @@ MEASURES = ("risk_mean_pct", "risk_max_pct", "warned_pct")
 """The columns of ``History.values``: mean and highest risk of a flight, and the share of flights with WARN or FAIL."""
 DAY_S = 86_400
 LEAST_DIFFERENCES = 60
-"""The minimum number of pairs of successive flights of a fleet to estimate the influence of wind and time in the air."""
+"""The minimum number of pairs of successive flights with which the influence of wind and time in the air is estimated."""
 
 Reals = NDArray[np.float64]
 QUERY = """
@@ -62,8 +62,8 @@ def histories(connection: Any) -> tuple[list[History], bool]:
     values = np.column_stack([columns[name] for name in MEASURES])
     influences = _influences(columns["wind_m_s"], columns["in_air_s"])
     same = vehicle[1:] == vehicle[:-1]
-    # Differences of successive flights of a vehicle: levels, trends and rare steps of its risk do not count as influence of the
-    # wind.
+    # Uses the differences between successive flights of a vehicle, so that the level, trends and rare steps of its risk do not
+    # count as influence of the wind.
     across, up = np.diff(influences, axis=0)[same], np.diff(values, axis=0)[same]
     is_adjusted = len(across) >= LEAST_DIFFERENCES
     if is_adjusted:

@@ -20,9 +20,9 @@ from .takeover import still_ours
 __all__ = ["Outcome", "process", "write"]
 
 LEAST_LOG_BYTES = 4096
-"""The approximate minimum size of the rows of a log on the disk of the dataset."""
+"""The approximate minimum size of a log's rows in the dataset, in bytes."""
 TRIES_S = (0.5, 2.0, 8.0)
-"""The delays before an object is requested again."""
+"""The delays before an object is requested again, in seconds."""
 
 
 @dataclass(frozen=True)

@@ -66,7 +66,7 @@ def open_dataset(dataset: str, names: str | os.PathLike[str] | None = None, only
         view(connection, names, only or {})
         connection.execute(_parts()[0])
         _require_findings(connection, place)
-        # Errors of questions name a damaged file.
+        # Errors of later questions can then name the damaged file.
         connection.execute("SET VARIABLE flagred_dataset = ?", [uri])
     return connection
 
@@ -81,7 +81,7 @@ def _views(connection: Any, place: Place) -> None:
             connection.register(f"stored_{kind}", schema.empty_table())
             continue
         with ThreadPoolExecutor(READERS) as readers:
-            # DuckDB opens only the files that a question needs.
+            # Opens every file to find damaged ones, because DuckDB opens only the files that a question needs.
             list(readers.map(lambda path: _open(place, path), paths))
         if place.is_local:
             folder = place.file(kind).replace("'", "''")

@@ -37,7 +37,7 @@ class Report:
     alerts: list[Change]
     """The rises above the limit, which require action by an operator."""
     document: dict[str, Any]
-    """The same for programs: docs/fleet.md."""
+    """The report as a JSON document for programs: see docs/fleet.md."""
     missing_reports: list[str]
     """Flights whose report could not be written, each with the reason."""
 

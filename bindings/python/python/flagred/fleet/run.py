@@ -187,7 +187,7 @@ def plan(
         except DamagedError as error:
             damaged = (error,)
         if not dry_run:
-            # Before the dataset is read, so that nothing is committed unnoticed.
+            # Takes over before the dataset is read, so that no earlier run commits anything unnoticed.
             job = job.of_run(take_over(dataset))
         catalog.load(dataset)
         damaged += redo(dataset, catalog, dry_run)

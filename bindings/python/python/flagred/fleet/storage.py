@@ -79,7 +79,7 @@ class Place:
             help = "the folder, or the keys before the logs, must exist"
             raise FleetError(f"there is no `{self.shown(self.root)}`", help)
         wanted = matcher(include)
-        # Releases the answer piece by piece.
+        # Keeps only the folders, so that the listings can be released one by one.
         folders = []
         for info in self.fs.get_file_info(pafs.FileSelector(self.root)):
             if info.type == pafs.FileType.Directory:
@@ -155,7 +155,7 @@ def parquet(place: Place, path: str) -> Iterator[pq.ParquetFile]:
     except pa.ArrowException as error:
         raise DamagedError.of(place.shown(path), error) from error
     except OSError as error:
-        # Arrow raises it without a number for pages that cannot be decoded or have a wrong checksum.
+        # If a page cannot be decoded or has a wrong checksum, Arrow raises an OSError without an error number.
         if error.errno is not None or not place.is_local:
             raise
         raise DamagedError.of(place.shown(path), error) from error
@@ -204,7 +204,7 @@ def open_place(uri: str) -> Place:
 
 
 def _azure(uri: str) -> tuple[pafs.FileSystem, str]:
-    """``az://container/path`` of the account in the usual environment variables."""
+    """Opens ``az://container/path`` of the account that the usual environment variables name."""
     account = os.environ["AZURE_STORAGE_ACCOUNT"]
     fs = pafs.AzureFileSystem(account_name=account, account_key=os.environ.get("AZURE_STORAGE_KEY"))
     return fs, uri.removeprefix("az://")

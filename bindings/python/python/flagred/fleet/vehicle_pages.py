@@ -143,8 +143,8 @@ def _over_time(rows: Sequence[Row], parts: Sequence[tuple[float, str]]) -> str:
 
 
 def _motors(rows: Sequence[Row], vehicles: int) -> str:
-    """The motors; one is named if such a drift occurs by chance in this many vehicles with a probability of at most 1 -
-    ``LEVEL``."""
+    """The table of the motors. A motor is named first if a drift like its own occurs by chance with a probability of at most
+    ``LEVEL`` among all motors of this many vehicles."""
     counts = [len(row["motor_margins"] or ()) for row in rows]
     motors = max(counts)
     of = [row for row, count in zip(rows, counts) if count == motors]

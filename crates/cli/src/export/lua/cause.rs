@@ -8,7 +8,7 @@ use fuzzy::{
 
 use super::{number, quoted, template::TemplateValues};
 
-/// The causes of the rules, and the rules that lead to propositions about other outputs.
+/// The causes of the rules; for causes that are other outputs, also the rules that conclude these outputs.
 #[derive(Default)]
 pub(super) struct Causes {
     motor_cause: bool,
@@ -17,8 +17,9 @@ pub(super) struct Causes {
 }
 
 impl Causes {
-    /// Adds the next rule: its consequent for the risk and the input that distinguishes it. If it is distinguished by the value of
-    /// another output, the cause is the rule that contributes most to that proposition. A rule without a number has no effect on the risk.
+    /// Adds the next rule: its consequent for the risk, and the input that distinguishes it. If another output
+    /// distinguishes the rule, the cause is the rule that contributes most to that proposition. A rule without a
+    /// number has no effect on the risk.
     pub(super) fn add(
         &mut self,
         estimator: &Estimator,
@@ -50,7 +51,7 @@ impl Causes {
         ));
     }
 
-    /// Fills in the template's parts for the causes.
+    /// Sets the parts of the template for the causes.
     pub(super) fn fill(self, filling: &mut TemplateValues) {
         filling.set("motor_cause", self.motor_cause);
         filling.set("leads", !self.leads.is_empty());
@@ -73,10 +74,10 @@ fn output_named<'e>(estimator: &'e Estimator, name: &str) -> Option<&'e Variable
     Some(&output.variable)
 }
 
-/// Returns the rules whose consequents are about the output of a proposition, as pairs of a rule's number and the
-/// degree of the proposition where the output has the value that it has if only this rule fires.
+/// Returns the rules that conclude the output of a proposition, each as its number and a degree: the degree of the
+/// proposition if only this rule fires.
 fn leads(estimator: &Estimator, proposition: &Proposition) -> String {
-    // As in the monitor: the strongest rule if the degree is 0 for all of them.
+    // The smallest degree, so that, as in the monitor, the strongest rule is chosen if the degree is 0 for all rules.
     const NOT_AT_ALL: f64 = 1e-9;
     let output = proposition.variable.text.as_str();
     let model = estimator.model();
@@ -131,8 +132,8 @@ fn distinguishing<'r>(estimator: &Estimator, condition: &'r Condition) -> Option
     propositions(condition).into_iter().min_by_key(rules_with)
 }
 
-/// Returns the texts for a pilot about the input of a proposition, as two Lua strings, and whether this input measures how near motors
-/// are to a limit.
+/// Returns the two texts for a pilot about the input of a proposition, as Lua strings, and whether this input measures
+/// how near motors are to a limit.
 fn texts(estimator: &Estimator, proposition: Option<&Proposition>) -> (String, bool) {
     let Some(proposition) = proposition else {
         return ("\"\", \"\"".into(), false);

@@ -109,7 +109,7 @@ impl<'m> Expressions<'m> {
                 Hedge::Any => "1.0".into(),
             };
         }
-        // A power binds more tightly than a product, but does not chain with another power.
+        // A power binds more tightly than a product, but a power of a power needs parentheses.
         match hedges.len() {
             0 | 1 => degree,
             _ => format!("({degree})"),
@@ -176,8 +176,8 @@ pub(super) fn corners(
             "the script supports terms of straight lines; `piecewise` can approximate a curve",
         )
     })?;
-    // At a vertical side the script uses the degree to its right, but a side at the end of the range has no degree to
-    // its right.
+    // At a vertical side, the script uses the degree to the right of the side. A side at the end of the range has no
+    // degree to its right.
     if let [.., (left, _), (right, _)] = *corners.as_slice()
         && left == right
         && right >= variable.high

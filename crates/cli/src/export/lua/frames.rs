@@ -41,6 +41,6 @@ fn line(frame: &Frame) -> String {
 }
 
 fn short(factor: f64) -> String {
-    // Adding 0 turns -0 into 0.
+    // Adding 0 removes the sign of -0.
     ((factor + 0.0) as f32).to_string()
 }

@@ -18,12 +18,13 @@ const SIGNALS: [(&str, &str); 4] = [
     ("battery_remaining_pct", "battery:capacity_remaining_pct(0)"),
 ];
 
-/// Seconds between two calls of the script, and the length of a bin of commands.
+/// Seconds between two calls of the script.
 const CALL_S: f64 = 0.03;
+/// The length of a bin of commands, in seconds.
 const BIN_S: f64 = 0.1;
 
-/// The source of a window's values. Values of one source arrive at the same times, so they share
-/// the weights of a window.
+/// The source of a window's values. Values of one source are known at the same times, so their statistics share the
+/// weights of a window.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Source {
     Motors,
@@ -34,7 +35,7 @@ enum Source {
     Ratio(usize, usize, f64),
 }
 
-/// A window of the script. Channels whose values arrive at the same times share it.
+/// A window of the script. Channels whose values are known at the same times share it.
 struct Window {
     window_s: f64,
     in_bins: bool,
@@ -43,7 +44,7 @@ struct Window {
     inputs: Vec<usize>,
 }
 
-/// Fills in the template's parts for the inputs.
+/// Sets the parts of the template for the inputs.
 pub(super) fn fill(
     estimator: &Estimator,
     plan: &Plan<'_>,
@@ -164,7 +165,7 @@ pub(super) fn fill(
         if let Some(ratio) = of.ratio {
             let made = quotient(&value, &ratio);
             script.read.push(match of.if_missing {
-                // The assumed value replaces the ratio itself, not only its dividend.
+                // An assumed value is that of the ratio itself, not of its numerator.
                 Some(_) => format!("  if has_come[{}] then\n  {made}\n  end", input + 1),
                 None => made,
             });
@@ -205,7 +206,8 @@ fn row(statistic: Statistic, input: usize) -> (&'static str, String) {
     }
 }
 
-/// Refuses statistics that would visit all slots of a window at every call, which takes too long, and statistics that the script lacks.
+/// Refuses statistics that the script does not support, or that take too long because they would visit all slots of a
+/// window in every call.
 fn carried(channel: &Channel, statistic: Statistic) -> Result<(), UnsupportedFeature> {
     let what = match statistic {
         Statistic::Rate => "the statistic `rate`",
@@ -273,8 +275,8 @@ impl Window {
     }
 }
 
-/// Maximum number of slots that are used at once: one for each call or bin, but at most the number
-/// of the monitor.
+/// The number of slots of a window in the script: one for each call or bin and a few spare ones, but at most 130, as
+/// in the monitor.
 fn capacity(window_s: f64, step_s: f64) -> u32 {
     const MOST: f64 = 130.0;
     ((window_s / step_s).floor() + 4.0).min(MOST) as u32

@@ -1,5 +1,5 @@
-//! Limits of ArduPilot that a large profile would exceed. They are checked before a script is written, so that it does not fail on the
-//! vehicle. The tests check the constant parts of the script against them.
+//! Limits of ArduPilot that a large profile may exceed. They are checked before a script is written, so that it does
+//! not fail on the vehicle. The tests compare the constant parts of the script with these limits.
 
 use super::UnsupportedFeature;
 
@@ -43,12 +43,12 @@ impl Size {
         self.code += code.map(|code| code.len() + 1).sum::<usize>();
     }
 
-    /// Estimates the most instructions of a call.
+    /// Estimates the maximum number of instructions of a call.
     fn instructions(&self) -> usize {
         2_600 + 330 * self.windows + 250 * self.rows + 28 * self.rules + 25 * self.terms
     }
 
-    /// Estimates the bytes that the script keeps with 64-bit pointers.
+    /// Estimates the bytes that the script keeps in memory with 64-bit pointers.
     fn bytes(&self) -> usize {
         let (code, number, window, row) = (3.2, 16, 1_600, 420);
         (self.code as f64 * code) as usize

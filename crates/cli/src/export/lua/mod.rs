@@ -44,16 +44,18 @@ const PARTS: [(&str, &str); 15] = [
 
 /// Constants of the script that do not depend on the profile.
 const SCRIPT: [(&str, &str); 13] = [
-    // Times between two calls, and between two values for the ground station.
+    // The time between two calls.
     ("CALL_MS", "30"),
+    // The time between two values for the ground station.
     ("SEND_US", "500000"),
-    // Commands are averaged over a bin before their noise is computed.
+    // The length of a bin: commands are averaged over a bin before their noise is computed.
     ("BIN_US", "100000"),
     // Maximum number of slots of a window.
     ("SLOTS", "128"),
-    // Maximum time; longer times are shortened.
+    // Maximum time: `later` does not add to a longer time.
     ("LONG_US", "1000000000"),
-    // Half of the heap that must remain free for the temporary memory of calls.
+    // Bytes of a test string. Creating it takes twice as much memory; so much must be free for the temporary values of
+    // calls.
     ("RESERVE_BYTES", "3000"),
     // Severities of MAVLink.
     ("CRITICAL", "2"),

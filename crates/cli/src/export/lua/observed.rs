@@ -33,7 +33,7 @@ pub(super) struct Script {
 }
 
 impl Script {
-    /// Returns the value of a sample for a channel, and the spread within a sample, if it has one.
+    /// Returns the value of a sample for a channel, and the spread of the values within a sample, if there is one.
     pub(super) fn value(
         &mut self,
         channel: &Channel,
@@ -94,7 +94,7 @@ impl Script {
             Observed::HighSide => "high_side",
             _ => "command",
         };
-        // The distance of the highest motor to the upper limit does not need a list.
+        // The smallest distance to the upper limit is that of the highest motor, and needs no list.
         if (channel.observed, channel.motors) == (Observed::HighSide, Motors::Min) {
             self.uses("highest_of");
             let room = "sum and 1 - highest_of(command) or nil".to_owned();
@@ -151,7 +151,7 @@ impl Script {
 
     /// Returns a value computed over all motors; nil if the commands are unknown.
     fn of_list(&mut self, function: &'static str, list: &str, limit: Option<f64>) -> String {
-        // The sum of the commands is available already.
+        // The sum of the commands is already known.
         if (function, list) == ("mean_of", "command") {
             return self.computed("mean_command".into(), "sum and sum / motors or nil".into());
         }
@@ -181,7 +181,7 @@ impl Script {
         name
     }
 
-    /// The number of local variables of the function that processes a sample: three of its own and the values.
+    /// The number of local variables of the function that processes a sample: three fixed ones and one for each value.
     pub(super) fn locals(&self) -> usize {
         3 + self.values.len()
     }
@@ -251,7 +251,8 @@ impl Script {
     }
 }
 
-/// Returns the value, its square, or for a share whether it is beyond the threshold.
+/// Returns the code that a window sums up: the value, its square, or for a share whether the value is beyond the
+/// threshold.
 fn counted(value: &str, threshold: Option<Threshold>, squared: bool) -> String {
     let beyond = |sign: &str, limit: f64| {
         format!(

@@ -25,7 +25,7 @@ impl Coefficients {
         match output.form() {
             ClosedForm::Moments => {
                 let moments = table.moments.get(range).unwrap_or_default();
-                // Rounding errors are set to 0.
+                // Tiny numbers, which are rounding errors, become 0.
                 let moment = |m: &Moment| {
                     if m.moment.abs() < 1e-9 { 0.0 } else { m.moment }
                 };
@@ -92,8 +92,8 @@ impl Coefficients {
     }
 }
 
-/// Returns the code for the value of an output from `strengths` strengths that begin at `first`. The value is stored in
-/// `x[place]`; that of the risk, without a place, is returned.
+/// Returns the code for the value of an output, from `strengths` firing strengths that begin at `first`. The code
+/// stores the value in `x[place]`; without `place`, the output is the risk, and the code returns its value.
 pub(super) fn defuzzify(
     output: &Output,
     (first, strengths): (usize, usize),

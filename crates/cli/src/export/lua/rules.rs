@@ -1,4 +1,4 @@
-//! The rules as expressions, stage by stage, and the values that fill their gaps.
+//! Generates the rules as Lua expressions, stage by stage, and the values that fill the gaps of the rules.
 
 use flagred::{
     board::{
@@ -29,7 +29,7 @@ struct Stage<'a> {
     rules: Vec<usize>,
 }
 
-/// Fills in the template's parts for the rules.
+/// Sets the parts of the template for the rules.
 pub(super) fn fill(
     estimator: &Estimator,
     plan: &Plan<'_>,
@@ -215,7 +215,8 @@ fn stages<'a>(model: &Model, plan: &Plan<'a>) -> Vec<Stage<'a>> {
     stages.collect()
 }
 
-/// Returns an action on the firing strength of a consequent. Rules with the same consequent share one firing strength.
+/// Returns an action that sets the firing strength of a consequent. Rules with the same consequent share one firing
+/// strength.
 fn action_of<'a>(
     model: &Model,
     stage: &Stage<'a>,
@@ -231,7 +232,8 @@ fn action_of<'a>(
     })
 }
 
-/// Clamps the inputs to their ranges, in the order of the rules. Inputs that the risk does not depend on may be unknown.
+/// Returns the code that clamps the inputs to their ranges, in the order of the rules. Inputs that the risk does not
+/// depend on may be unknown.
 fn point(plan: &Plan<'_>) -> Vec<String> {
     let inputs = plan.rules.table.inputs.iter().zip(plan.order).zip(1..);
     let line = |((input, from), i): ((&flagred::board::table::Input, &u32), u32)| {

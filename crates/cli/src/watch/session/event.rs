@@ -11,7 +11,7 @@ use serde::{Serialize, Serializer};
 
 use super::{Source, UntrustedPacket};
 
-/// An event of a watch; serialised, a line of `--jsonl` with the names of docs/json.md.
+/// An event of a watch. Serialised, it is a line of `--jsonl` with the names of docs/json.md.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 #[schemars(inline)]
 #[serde(tag = "event", rename_all = "snake_case")]
@@ -54,10 +54,10 @@ pub(crate) enum Event {
         #[schemars(with = "Option<String>")]
         address: Source,
     },
-    /// Another watch of the vehicle is received, or is no longer received.
+    /// Another watch of the same vehicle is received, or is no longer received.
     AnotherWatch {
         system: u8,
-        /// The component that also sends the risk; null if it is no longer received.
+        /// The MAVLink component of the other watch; null if it is no longer received.
         component: Option<u8>,
         /// Whether this watch sends warnings.
         speaks: bool,
@@ -71,15 +71,15 @@ pub(crate) enum Event {
         #[schemars(with = "VehicleDescription<'_>")]
         vehicle: Vehicle,
     },
-    /// Motors and limits are known or assumed; repeated when more about them becomes known.
+    /// Motors and limits are known or assumed. The event is repeated when more about them becomes known.
     Ready {
         #[serde(flatten)]
         setup: Setup,
-        /// The parameters from which they follow, and gains, as far as they are known.
+        /// The parameters that determine motors and limits, and the gains, as far as they are known.
         parameters: Vec<Parameter>,
     },
-    /// The rate of motor commands is too low, because another station requested a lower rate or the
-    /// link is too slow; with the station, if the vehicle reported it.
+    /// The rate of motor commands is too low, because another station requested a lower rate or the link is too slow.
+    /// The station is included if the vehicle reported it.
     Slowed {
         /// The number of motor commands per second.
         rate_hz: f64,

@@ -372,7 +372,7 @@ fn a_lasting_imbalance_is_reported_with_its_motor_until_landing() {
     assert_eq!(bench.session.finish(&mut out), Verdict::Known(Level::Warn));
 }
 
-/// A motor is weak; the link is lost for 6 s; the vehicle lands.
+/// A motor is weak, then the link is lost for 6 s, then the vehicle lands.
 #[test]
 fn good_is_never_reported_for_an_unknown_risk() {
     let estimator = shipped::flagred();
@@ -451,7 +451,7 @@ fn a_restarted_clock_is_continued() {
     assert!(latest.risk.is_ok() && latest.t_s > 4299.0, "{latest:?}");
 }
 
-/// Two motors of the hexacopter have no output with their function.
+/// Two motors of the hexacopter are not assigned to an output.
 #[test]
 fn a_vehicle_whose_motors_are_not_all_known_ends_with_that_reason() {
     let estimator = estimator();

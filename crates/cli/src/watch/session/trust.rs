@@ -1,4 +1,5 @@
-//! Which senders the watch trusts: candidates for the vehicle to follow, and other senders that use its name.
+//! Which senders the watch trusts: candidates for the vehicle to follow, and other senders that use the ids of the
+//! vehicle.
 
 use std::net::SocketAddr;
 
@@ -11,7 +12,7 @@ pub(crate) type Source = Option<SocketAddr>;
 
 /// Number of consistent heartbeats that make a candidate the vehicle to follow.
 const BEATS: u32 = 3;
-/// Maximum seconds between these heartbeats.
+/// Maximum time between two of these heartbeats, in seconds.
 const BEAT_WAIT_S: f64 = 5.0;
 /// Number of motor commands that prove a candidate while the vehicle that is followed sends none.
 const COMMANDS: u32 = 2;
@@ -29,7 +30,7 @@ pub(crate) enum UntrustedPacket {
     SecondSender,
     /// A parameter from another component of the vehicle.
     OtherComponent,
-    /// A timestamp that jumps although the clock does not.
+    /// A timestamp that jumps although the clock of the vehicle does not.
     ClockJump,
 }
 
@@ -40,7 +41,7 @@ pub(crate) struct UntrustedCounts {
     pub(crate) second_sender: u64,
     /// Parameters from other components.
     pub(crate) other_component: u64,
-    /// Timestamps that jump.
+    /// Timestamps that jump although the clock of the vehicle does not.
     pub(crate) clock_jumps: u64,
 }
 
@@ -58,7 +59,7 @@ impl UntrustedCounts {
     }
 }
 
-/// The reason to doubt a packet that has the vehicle's system but may come from another sender.
+/// Returns the reason to doubt a packet that has the vehicle's system id but may come from another sender.
 pub(super) fn doubt_of(packet: &Packet<'_>) -> Option<UntrustedPacket> {
     match (packet.component, packet.id) {
         (1, _) => Some(UntrustedPacket::SecondSender),

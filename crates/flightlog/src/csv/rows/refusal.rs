@@ -11,7 +11,8 @@ const LEAST_STEPS: usize = 5;
 const LEAST_STEP_US: f64 = 1000.0;
 
 impl RowCollector {
-    /// The reason why the file is refused. The clock of a file that this crate wrote is in seconds.
+    /// The reason why the file is refused; `None` if it is accepted. If this crate wrote the file (`is_ours`), only
+    /// unusable cells are a reason, because the clock is known to be in seconds.
     pub(in crate::csv) fn refusal(&mut self, is_ours: bool, messages: u64) -> Option<ReadError> {
         let refused = self.refused.take();
         let most_go_back = self.first_back.filter(|_| self.went_back > messages);
@@ -35,8 +36,8 @@ impl RowCollector {
         refused.or_else(|| backwards.or_else(of_clock).filter(|_| !is_ours))
     }
 
-    /// An error for a column whose cells are mostly not pulse widths, because all motors would seem to be at a limit.
-    /// Single such cells are damage.
+    /// An error for a column whose cells are mostly not pulse widths, because all motors would seem to be at a limit. A
+    /// few such cells count as damage.
     pub(in crate::csv) fn other_unit(&self) -> Option<ReadError> {
         let mut columns = (1..).zip(&self.pulses);
         let (number, pulses) = columns.find(|(_, pulses)| pulses.outside > pulses.known / 2)?;

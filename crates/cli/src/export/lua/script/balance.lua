@@ -1,12 +1,12 @@
 -- The balance of the motors: a motor that works harder than before, and whether all work as before.
 
 local lately, trims, shifts = {}, {}, {} -- of each motor
-at_zero = {} -- for how long each motor is at zero, in s
+at_zero = {} -- how long each motor has been at zero, in s
 local lately_s, trim_s, load, load_s = 0.0, 0.0, 0.0, 0.0
 local imbalance_us, weak_us -- for how long the limits have been exceeded
-imbalance, imbalance_words = nil, nil -- in %, and what it is
-unbalanced, or_unbalanced = nil, nil -- the motor that is named, and the one that it may be as well
-weak, weak_motor, or_weak = nil, nil, nil -- in %, and as above
+imbalance, imbalance_words = nil, nil -- the imbalance in %, and its kind
+unbalanced, or_unbalanced = nil, nil -- the unbalanced motor, and a second one that may be it instead
+weak, weak_motor, or_weak = nil, nil, nil -- the extra command of a weak motor in %, the motor, and a second one that may be it
 sinks = false
 local is_back = false
 
@@ -15,7 +15,7 @@ local function weight(known_s, constant_s)
   return held_s / max(min(known_s, constant_s), held_s)
 end
 
--- Whether the motors are no farther apart than in the last seconds. In a fall they are.
+-- Whether the commands of the motors differ no more than in the last seconds. In a fall they differ more.
 function is_together()
   if lately_s < 5.0 or not sum then
     return true
@@ -41,8 +41,8 @@ local function two_highest(list)
   return first, second
 end
 
--- The motor to name, and the other one that it may be: the highest one if it is well above the others; otherwise the one that
--- stopped first; otherwise the highest one.
+-- The motor to name, and a second one if the numbers do not show which of the two it is. It is the highest one if that is well
+-- above the others; otherwise the one that stopped first; if none stopped, the highest one.
 local function culprit(list)
   local first, second = two_highest(list)
   local ahead = second and list[first] - list[second] or huge
@@ -64,7 +64,7 @@ local function is_near(list, usual, limit)
   return true
 end
 
--- The yaw effort that numbers of the motors amount to.
+-- The yaw effort of a list with a number for each motor.
 local function yaw_of(list)
   local yaw = 0.0
   if has_geometry then
@@ -75,7 +75,7 @@ local function yaw_of(list)
   return yaw
 end
 
--- How far a motor is at most above the one opposite.
+-- The largest amount by which a motor exceeds the opposite one, except for the part due to yaw.
 local function at_odds()
   local yaw, most = yaw_of(lately), 0.0
   for i = 1, motors do
@@ -163,12 +163,12 @@ function watch_balance()
   end
 end
 
--- Whether all motors work as before the alarm; without a trim from before it, whether they work alike.
+-- Whether all motors work as before the alarm; if no trims were learned before it, whether all motors work alike.
 function works_as_before()
   return is_back
 end
 
--- A new flight may begin.
+-- Forgets the trims, because a new flight may begin.
 function forget_trims()
   if trim_s > 0 then
     trims, trim_s = {}, 0.0

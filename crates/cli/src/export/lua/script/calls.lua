@@ -1,7 +1,7 @@
--- The calls.
+-- The functions that ArduPilot calls.
 
 local is_enabled = true
-local last_call -- the autopilot's clock
+local last_call -- the time of the last call on the autopilot's clock
 local sent_us, logged_bin, settings_us = LONG_US, -1, 0
 local has_failed = false
 
@@ -47,7 +47,7 @@ local function update()
     say(level, risk, false)
   end
 -- @if notices
-  -- A notice that is raised at the current level is reported, too.
+  -- A notice that does not change the level is reported, too.
   if raised and level == before and flown_us and not down_us then
     say(level, risk, true)
   end
@@ -65,7 +65,7 @@ local function update()
   end
 end
 
--- An error that leaves a script stops it and blocks arming.
+-- Catches errors: an error that is not caught would stop the script and block arming.
 function protected()
   local is_well, told = pcall(update)
   if is_well then
@@ -79,7 +79,7 @@ function protected()
   return protected, 1000
 end
 
--- The first call, when the memory of the loader is free again. Memory for the temporary values of a call must remain.
+-- The first call, after the memory of the loader was freed. Checks that enough memory remains for the temporary values of calls.
 function begin()
   begin = nil
   if not pcall(rep, " ", RESERVE_BYTES) then

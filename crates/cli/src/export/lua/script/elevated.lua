@@ -1,4 +1,4 @@
--- The elevated risk: what the risks of the last seconds add up to. Its window is `risks`, with one row.
+-- The elevated risk, which accumulates while the risks of the last seconds are high. Its window is `risks`, which has one row.
 
 elevated = 0.0
 local last_risk, last_rate
@@ -8,7 +8,7 @@ function clear_elevated()
   elevated, last_risk, last_rate = 0.0, nil, nil
 end
 
--- Abramowitz and Stegun 7.1.26, right to 1.5e-7.
+-- Abramowitz and Stegun, formula 7.1.26: the error is at most 1.5e-7.
 local function erf(x)
   local t = 1 / (1 + 0.3275911 * abs(x))
   local y = 1 - ((((1.061405429 * t - 1.453152027) * t + 1.421413741) * t - 0.284496736) * t + 0.254829592) * t * exp(-x * x)

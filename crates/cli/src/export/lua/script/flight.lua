@@ -1,14 +1,14 @@
 -- A flight.
 
-flown_us = nil -- since take-off; nil on the ground
-down_us = nil -- for how long it seems to be on the ground
+flown_us = nil -- time since take-off; nil on the ground
+down_us = nil -- how long the vehicle has seemed to be on the ground
 local settled, settling = false, huge -- whether the take-off is dropped, and the window to drop it from next
-local idle -- "landing" or "trouble"
-local lifted_us -- since the motors last did not idle; nil since the land detector last reported the ground
+local idle -- why the motors idle: "landing" or "trouble"
+local lifted_us -- time since the motors last did not idle; nil if the land detector has reported the ground since then
 falls = false -- whether the motors idle in the air
-local since_high_us, unknown_us -- since a high risk, and since a risk was known
+local since_high_us, unknown_us -- time since the risk was last high, and since it was last known
 
--- Resets the state after a flight or a gap. After a gap in the air, trims and the doubt about an alarm stay.
+-- Resets the state after a flight or a gap. After a gap in the air, the trims are kept, and an alarm stays as a doubt.
 function forget(is_gap)
   lifted_us = not is_gap and lifted_us or nil
   local was_alarm = is_gap and level_now() > GOOD
@@ -32,7 +32,7 @@ function forget(is_gap)
 -- @end
 end
 
--- Whether the vehicle is on the ground: by the land detector, or because the motors idle, before take-off and after a flight that
+-- Whether the vehicle is on the ground: the land detector reports it, or the motors idle before take-off or after a flight that
 -- was calm to its end. While the command of a motor is unknown, the vehicle counts as in the air.
 local function rests()
   local fell = falls
@@ -48,7 +48,7 @@ local function rests()
     idle, lifted_us = nil, 0
     return false
   end
-  -- While an alarm is raised, the rules decide.
+  -- While the level is not GOOD, a new fall is not detected: the risk is that of the rules.
   falls = (fell or risk_level == GOOD) and lifted_us ~= nil and lifted_us >= 3000000
   if not idle then
     local is_trouble = since_high_us and since_high_us <= 2000000
@@ -60,7 +60,7 @@ local function rests()
   return idle == "landing" and not falls
 end
 
--- Some time after take-off, drops it from the long windows, one a call, and from the elevated risk.
+-- Some time after take-off, drops the take-off from the elevated risk and from the long windows, one window per call.
 local function settle()
   if not settled and flown_us >= TAKE_OFF_US + WARM_UP_US then
     settled, settling = true, 1
@@ -74,7 +74,7 @@ local function settle()
     if window.length_us > TAKE_OFF_US then
       local samples = window.samples
       drop_older(window, flown_us - TAKE_OFF_US - 1)
-      -- Slots that stay hold more than a sample each; calls come often enough for that many.
+      -- The remaining slots contain several samples each; calls are frequent enough for at least this number.
       window.samples = max(window.samples, min(samples, MIN_SAMPLES))
       return
     end
@@ -116,7 +116,7 @@ function fly()
         forget(false)
       end
     else
-      -- It landed in a gap.
+      -- The vehicle may have landed during a gap.
       doubt_us = nil
 -- @if imbalance
       forget_trims()

@@ -1,4 +1,4 @@
--- The geometry, read once.
+-- The geometry of the motors, read once.
 
 -- The frames of ArduPilot: class and type, name, and number, roll, pitch and yaw factor of each motor. One text, since many
 -- short ones take more memory to load.
@@ -7,7 +7,7 @@ local FRAMES = [[
 -- @put frames
 ]]
 
--- Solves four equations by elimination with pivots; nil where they do not have one solution.
+-- Solves four equations by elimination with pivots; nil if they have no unique solution.
 local function solve(rows, right)
   for step = 1, 4 do
     local pivot = step
@@ -38,7 +38,7 @@ local function solve(rows, right)
   return right
 end
 
--- How much of an effort (1 roll, 2 pitch, 3 yaw, 4 thrust) a unit of command of each motor is: the axis' row of the
+-- The effort about an axis (1 roll, 2 pitch, 3 yaw, 4 thrust) per unit of command of each motor: the row of this axis in the
 -- pseudo-inverse of all factors.
 local function shares_of(factors, axis)
   local rows, right = {}, {0.0, 0.0, 0.0, 0.0}
@@ -68,7 +68,7 @@ local function shares_of(factors, axis)
 end
 
 -- @if imbalance
--- The motor on the other side of the middle; of two on one arm the one that turns the same way.
+-- Finds the opposite motor of each motor. If two motors share the opposite arm, it is the one that turns the same way.
 local function find_opposites(factors)
   for i, motor in ipairs(factors) do
     local least = huge

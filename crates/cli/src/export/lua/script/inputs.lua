@@ -1,23 +1,23 @@
 -- The inputs of the rules.
 
-value = {} -- of the inputs; nil where one is unknown
+value = {} -- the values of the inputs; nil if unknown
 
--- Takes in a sample of flight.
+-- Adds a sample in flight to the windows.
 function observe()
   local inputs, value, windows = inputs, value, windows
 -- @put observe
 end
 
 -- @if if_missing
-has_come = {} -- by input, whether its signals have been known: a vehicle may never send them
+has_come = {} -- whether the signals of each input have ever been known: a vehicle may lack them
 
--- Notes signals, in the air and on the ground.
+-- Notes which signals are known, in the air and on the ground.
 function note_signals()
 -- @put note_signals
 end
 
 -- @end
--- The seconds that are known of a window and the share of its oldest slot that has left it; nil where too little is known.
+-- The known seconds of a window, and the share of its oldest slot that has left the window; nil if too little is known.
 local function enough(window)
   local out = outside(window)
   local total = total_of(window, window.weight, out) + window.bin_held
@@ -28,7 +28,7 @@ local function enough(window)
   return total, out
 end
 
--- The inputs' values; false where one is not known.
+-- Computes the inputs. The result is false or nil if an input that the risk depends on is unknown.
 function read_inputs()
   local inputs, value, windows = inputs, value, windows
   local all, total, out = true, nil, nil

@@ -1,27 +1,27 @@
--- Levels: raised after a while, held, lowered after a while.
+-- Levels, which are raised after some time, held, and lowered after some time.
 
--- What each rule is about: the area and the centre of its consequent, what a pilot reads, whether motors are at a limit.
+-- For each rule: area and centre of its consequent, two texts for the pilot, and whether its cause is motors near a limit.
 CAUSES = {
 -- @put causes
 }
 -- @if leads
--- For a cause that is the value of another output: the rules of that output, and how much each contributes.
+-- For a cause that is the value of another output: the numbers of that output's rules, each with a factor for its contribution.
 local LEADS = {
 -- @put leads
 }
 -- @end
 warn_risk, fail_risk = WARN_RISK, FAIL_RISK -- parameters may change them
 risk_level = GOOD -- of the risk alone
-local reached_at = {} -- since when the thresholds of each level are reached
-local held_at = 0 -- when something last held the level
-is_open, by_elevated, by_fall = false, false, false -- the time of trouble
+local reached_at = {} -- the time since which the threshold of each level has been reached
+local held_at = 0 -- the last time at which the risk held the level
+is_open, by_elevated, by_fall = false, false, false -- whether a finding is open, and whether elevated risk or a fall raised it
 local open_level = GOOD
 -- @if motor_cause
-local seen, mean_margin, least_margin = 0, {}, {} -- the motors while a level is being reached
+local seen, mean_margin, least_margin = 0, {}, {} -- margins of the motors since a threshold was first reached
 is_upper = {} -- whether the limit that each motor was nearest to is the upper one
 -- @end
 
--- The rule that raises the risk most: the largest share of it, above half of its value.
+-- The rule that raises the risk most: the one with the largest product of strength, area and (centre - risk / 2).
 local function find_cause(risk)
   if is_filled then
     return nil
@@ -61,7 +61,7 @@ local function is_reached(risk, risk_limit, elevated_limit)
 end
 
 -- @if motor_cause
--- The motor with the least mean margin, where it is near a limit; of motors at zero the one that is there for longest.
+-- The motor with the least mean margin; nil if it is not near a limit. Among motors at zero, the one that stopped first.
 local function weakest()
   local found
   for i = 1, motors do
@@ -92,7 +92,7 @@ local function raise(level, of_elevated, risk)
   is_open = true
 end
 
--- A level that is reached now; returns what holds it.
+-- Raises a level if its threshold has been reached for long enough. Returns the highest level that the risk holds so far.
 local function follow(level, held, risk, can_raise, risk_limit, elevated_limit, after_us, until_risk, until_elevated)
   local reached, of_elevated = is_reached(risk, risk_limit, elevated_limit)
   reached = reached and can_raise
@@ -112,7 +112,7 @@ local function follow(level, held, risk, can_raise, risk_limit, elevated_limit, 
 end
 -- @if motor_cause
 
--- Keeps what the motors do while a level is being reached, from its beginning.
+-- Records the margins of the motors while the threshold of a level is reached, from the time at which it is first reached.
 local function watch_motors(risk, takes_off)
   local warns = not takes_off and is_reached(risk, warn_risk, WARN_ELEVATED)
   local fails = is_reached(risk, fail_risk, FAIL_ELEVATED)
@@ -138,14 +138,14 @@ local function watch_motors(risk, takes_off)
 end
 -- @end
 
--- The lower of a risk that ends a level and the one that raises it.
+-- The risk that holds a level: not above the risk that raises it, which a parameter may have lowered.
 local function lower(until_risk, risk)
   return until_risk and risk and min(until_risk, risk) or until_risk
 end
 
-doubt_us = nil -- since an alarm: for how long the motors have worked as before
+doubt_us = nil -- after an alarm: how long the motors have worked as before it
 
--- After an alarm the level is GOOD again when the motors have worked as before for as long as a level is held.
+-- After an alarm, the level is GOOD again once the motors have worked as before it for the time after which a level is cleared.
 local function doubt()
   local is_back = true
 -- @if imbalance

@@ -4,9 +4,9 @@
 -- FR_RISK and FR_ELEV in %, and a text when the level changes. It changes nothing on the vehicle. Installation, cost and
 -- tests: docs/firmware.md of FLAGRED.
 --
--- An error while ArduPilot loads a script blocks arming. So ArduPilot compiles only this loader; the rest of the file is a
--- comment to it. The loader reads the file again and compiles it part by part, which takes less memory than all at once, and
--- where that fails, it sends a text and ends. Parts end at a form feed; this table is their environment.
+-- An error while ArduPilot loads a script blocks arming. Therefore ArduPilot compiles only this loader; the rest of the file is
+-- a comment. The loader reads the file again and compiles it part by part, which takes less memory than all at once. If that
+-- fails, it sends a text and ends. Each part ends at a form feed. The parts share this table as their environment.
 
 local shared = {
   floor = math.floor, sqrt = math.sqrt, exp = math.exp, abs = math.abs, huge = math.huge, min = math.min, max = math.max,
@@ -18,8 +18,8 @@ local shared = {
 -- @end
 }
 -- @put parts
-local number, chunk = 1, nil -- of the next part; what is compiled of it
-local file, is_over = nil, false -- whether the part has ended
+local number, chunk = 1, nil -- the number of the next part, and the part once it is compiled
+local file, is_over = nil, false -- the file of this script, and whether the part that is being read has ended
 
 local function open()
   if not load then
@@ -35,7 +35,7 @@ local function open()
   end
 end
 
--- The next line of a part, which stands in a comment; nil at its end.
+-- The next line of a part, without the mark that makes it a comment; nil at the end of the part.
 local function line()
   if is_over then
     return nil
@@ -48,7 +48,7 @@ local function line()
   return not is_over and string.sub(found, 4) or nil
 end
 
--- Compiles the next part, or runs what is compiled. Returns whether there is more to do.
+-- Compiles the next part, or runs the part that was compiled. Returns whether there is more to do.
 local function go_on()
   if chunk then
     local part = chunk

@@ -1,9 +1,9 @@
--- Time. Whole microseconds that wrap after 71 min; only differences of under 35 min are used.
+-- Time, in whole microseconds. It wraps after 71 min, so only differences below 35 min are used.
 
 clock_us = 0
 held_us, held_s = 0, 0.0 -- since the last call
-bin, bin_us = 0, 0 -- the bin of commands, and the time into it
-has_moved = false -- whether this call has done one of the longer steps
+bin, bin_us = 0, 0 -- the number of the current bin of commands, and the time since its start
+has_moved = false -- whether this call has run `move_shift`, which takes long
 
 function later(us, by_us)
   return us < LONG_US and us + by_us or us
@@ -11,7 +11,7 @@ end
 
 -- Motors. A command is 0 at the lower limit of the range that is used in flight, 1 at the upper one.
 
-motors, functions, numbers = 0, {}, {} -- how many; function and number of each output
+motors, functions, numbers = 0, {}, {} -- the number of motors; the output function and the motor number of each
 command = {}
 local low_us, scale = 1000.0, 0.001
 -- @if less_yaw
@@ -29,7 +29,7 @@ local bin_sum, bin_before, bin_count, noise_bin = {}, {}, 0, nil
 -- @if geometry
 yaw_factor, has_geometry = {}, false
 -- @if imbalance
-opposite = {} -- the motor on the other side; nil where there is none
+opposite = {} -- the opposite motor of each motor; nil if there is none
 -- @end
 -- @end
 
@@ -40,8 +40,8 @@ local function pair(low, high, least, most, width)
   end
 end
 
--- Reads MOT_PWM_MIN and MAX, or the range of the throttle's channel, and the part of it from MOT_SPIN_MIN to MAX. Returns the
--- limits in us; nil where they are not valid.
+-- Reads the range from MOT_PWM_MIN and MOT_PWM_MAX or from the throttle channel, and the part of it that MOT_SPIN_MIN and
+-- MOT_SPIN_MAX limit. Returns the limits in us; nil if they are not valid.
 function read_limits()
   local own = param:get("MOT_PWM_MIN")
   local low, high
@@ -61,9 +61,9 @@ function read_limits()
   return low_us, low_us + 1 / scale
 end
 
--- The sum is nil where the commands are unknown.
+-- Reads the commands. Their sum is nil if one of them is unknown.
 function read_commands()
-  -- Locals take fewer instructions.
+  -- Access to local variables takes fewer instructions.
   local low_us, scale, command, functions, channels = low_us, scale, command, functions, SRV_Channels
 -- @if margin
   local margin = margin
@@ -111,7 +111,7 @@ function read_commands()
 end
 -- @if deviation_of
 
--- `sum` is that of the list; nil adds it up.
+-- `sum` is the sum of the list; if it is nil, it is computed here.
 function deviation_of(list, sum)
   local mean, square = sum or 0.0, 0.0
   for i = 1, sum and 0 or motors do
@@ -183,7 +183,7 @@ end
 -- @end
 -- @if noise
 
--- The noise of the commands, known when a bin is complete: of the steps between the means of bins.
+-- Computes the noise of the commands from the steps between the means of bins. It is known only when a bin is complete.
 function take_noise()
   command_noise = nil
   if noise_bin ~= bin then

@@ -1,8 +1,8 @@
--- Notices besides the risk, as WARN until the flight ends.
+-- Notices that are not about the risk. They keep the level at WARN or above until the flight ends.
 
-raised = false -- whether something was raised in this call
+raised = false -- whether a notice was raised in this call
 
--- A moving average; until its time constant has passed, the plain mean.
+-- A moving average; until its time constant has passed, it is the plain mean.
 local function new_average()
   return {value = 0.0, known = 0.0}
 end

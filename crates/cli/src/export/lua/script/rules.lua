@@ -5,7 +5,7 @@ local coverage = 0.0 -- the largest firing strength
 local strengths, degrees = {}, {} -- of output terms, and of terms in conditions
 is_filled = false
 
--- Along the corners x1, degree 1, x2, degree 2 and so on.
+-- The degree at x, interpolated between the corners: x1, degree 1, x2, degree 2 and so on.
 local function along(corners, x)
   local count = #corners
   if x < corners[1] then
@@ -61,7 +61,7 @@ local function by_rules(x)
 end
 -- @if filled
 
--- Where the rules leave a gap: values at knots, the last input running fastest; linear between them.
+-- Values for gaps between the rules, at knots, with the last input varying fastest; linear interpolation between the knots.
 local KNOTS = {
 -- @put knots
 }
@@ -98,7 +98,7 @@ function estimate()
 -- @put point
   local risk = by_rules(point)
 -- @if filled
-  -- A coverage a hair below the limit is rounding.
+  -- A coverage that is only just below the limit is a rounding error.
   is_filled = coverage < COVERAGE_BELOW * (1 - 1e-5)
   if is_filled then
     risk = filled(point, 1, 0)

@@ -15,7 +15,7 @@ local function add_parameters()
 end
 
 local function output(motor_function)
-  -- Older firmware has fewer functions, and refuses the others.
+  -- Older firmware has fewer functions, and fails for the others.
   local is_known, pwm = pcall(SRV_Channels.get_output_pwm, SRV_Channels, motor_function)
   return is_known and pwm
 end
@@ -32,7 +32,7 @@ local function find_motors()
   end
 end
 
--- How many motors the frame has, by FRAME_CLASS; by the highest number of a motor where the class is not in the list.
+-- The number of motors of the frame, by FRAME_CLASS; if the class is not in the list, the highest motor number.
 local function motors_of_frame()
 -- @put motors_of_class
   return MOTORS_OF[param:get("FRAME_CLASS") or 0] or numbers[motors] or 0
@@ -42,7 +42,7 @@ add_parameters()
 find_motors()
 local expected = motors_of_frame()
 if motors > 0 and motors < expected then
-  -- The risk of the other motors would be called GOOD.
+  -- Otherwise the level would be GOOD even if one of the other motors is at a limit.
   error(format("only %d of %d motors have outputs", motors, expected), 0)
 end
 if motors == 0 or not read_limits() then

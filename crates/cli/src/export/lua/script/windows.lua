@@ -1,7 +1,7 @@
--- Windows: sums over the last seconds, in slots of time in which samples are merged. The slots lie in a ring, in three runs: the
--- front, of whose slots each holds the sum of itself and the later ones of the front; the middle, which is made the same, two
--- slots a call; and the back, to which slots are added. So a call costs the same whatever the length, and as nothing is
--- subtracted from a sum that stays, nothing drifts.
+-- Windows: sums over the last seconds, in slots of time that merge samples. The slots form a ring with three parts. In the front,
+-- each slot contains the sum of itself and all later slots of the front. The middle is converted to the same form, two slots per
+-- call. New slots are added to the back. Thus the cost of a call does not depend on the length of the window, and rounding errors
+-- do not accumulate, because nothing is subtracted from a sum that is kept.
 
 function clear(window)
   window.slots, window.front, window.middle, window.back, window.unturned = 0, 0, 0, 0, 0
@@ -24,7 +24,7 @@ local function turn(window)
   end
 end
 
--- Makes slots of the middle hold the sum of themselves and the later ones.
+-- Converts up to `count` slots of the middle, so that each contains the sum of itself and the later ones.
 local function sum_middle(window, count)
   while count > 0 and window.unturned > 0 do
     local later_slot = window.turning
@@ -41,7 +41,7 @@ local function sum_middle(window, count)
   end
 end
 
--- Where the front has run out, the middle becomes the front.
+-- If the front is empty, the middle becomes the front.
 local function keep_a_front(window)
   if window.front > 0 then
     return
@@ -57,18 +57,18 @@ local function keep_a_front(window)
   end
 end
 
--- Drops what ended so long ago or longer.
+-- Drops slots that ended at least this long ago.
 function drop_older(window, us)
   while window.slots > 0 and clock_us - window.end_us[window.oldest] >= us do
     keep_a_front(window)
     window.oldest = window.oldest % window.capacity + 1
     window.front, window.slots = window.front - 1, window.slots - 1
-    -- Not fewer than that many samples are left.
+    -- At least one sample per slot is left; the exact number is not stored.
     window.samples = window.slots
   end
 end
 
--- The slot for what ended at a time in a slot of that number.
+-- The slot for a sample that ended at `end_us`: the newest slot if it has this number or the ring is full, otherwise a new one.
 local function slot_of(window, number, end_us)
   if window.slots == 0 or window.newest_number ~= number and window.slots < window.capacity then
     if window.middle == 0 and window.back > 1 and 2 * (clock_us - window.back_since_us) >= window.length_us then
@@ -103,7 +103,7 @@ local function put(list, slot, x)
   list[slot], list.back = list[slot] + x, list.back + x
 end
 
--- Puts a value into a slot. Spreads are sums about a value near the mean, which keeps their digits.
+-- Adds a value to a slot. The sums of a spread are relative to a value near the mean, which preserves their precision.
 local function merge(row, slot, held, x, rest)
 -- @if extremes
   if row.kind == "lowest" or row.kind == "highest" then
@@ -121,8 +121,8 @@ local function merge(row, slot, held, x, rest)
   end
 end
 
--- The value of the latest bin, and its rest: of a spread the noise, half of the squared step from the bin before, is taken
--- away; of a mean, the squared step itself is the value.
+-- The value of the latest bin, and a second number: for a mean, the squared step from the bin before, whose mean is computed;
+-- for a spread, minus half of that squared step, which removes the noise from the variance.
 local function of_bin(window, row)
   local x = row.bin_sum / window.bin_samples
   local step = row.before and x - row.before or 0.0
@@ -170,7 +170,7 @@ function take_sample(window, held)
   end
 end
 
--- The numbers of a list together, without a share of the oldest slot.
+-- The sum of a list, without the share `out` of its oldest slot.
 function total_of(window, list, out)
   local sum = list.middle + list.back
   if window.front > 0 then
@@ -197,7 +197,7 @@ function outside(window)
   return inside_s < own and 1 - inside_s / own or 0.0
 end
 
--- Sums about another value.
+-- Changes the value that the sums of a row are relative to.
 local function move_shift(row, window, by)
   local sum, square, weight = row.sum, row.square, window.weight
   for slot = 1, window.capacity do
@@ -213,7 +213,7 @@ local function move_shift(row, window, by)
   row.shift = row.shift + by
 end
 
--- The mean, the lowest or the highest value; for a spread the mean and the variance.
+-- The mean, the lowest or the highest value of a row; for a spread, the mean and the variance.
 function read_row(window, row, total, out)
   local kind, held = row.kind, window.bin_held
 -- @if extremes

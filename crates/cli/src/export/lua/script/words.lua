@@ -1,4 +1,4 @@
--- What the pilot reads, in at most 50 characters.
+-- The level and the cause that the pilot reads, in texts of at most 50 characters.
 
 function level_now()
   local level = risk_level
@@ -11,7 +11,7 @@ function level_now()
   return doubt_us and max(level, WARN) or level
 end
 
--- A cause in two parts; where there is no room for the last one, the first one is true alone.
+-- The cause in two parts; if there is no space for the second part, the first part is used alone.
 function cause_in_words()
   local about = cause and CAUSES[cause]
   if not about then

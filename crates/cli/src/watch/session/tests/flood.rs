@@ -9,9 +9,9 @@ use flagred_flightlog::mavlink::{
 
 use super::*;
 
-/// Number of flood packets for each packet of the vehicle: 50,000 a second.
+/// Number of flood packets for each packet of the vehicle, that is, 50,000 a second.
 const SHARE: usize = 2000;
-/// Maximum growth of memory after the first packets: the flight may need it, the flood must not.
+/// Maximum growth of memory after the first packets. The flight may need some memory, the flood must not.
 const GROWTH: u64 = 256 << 10;
 
 /// A packet of another sender, and its origin. System, component, address and contents are random.
@@ -104,7 +104,7 @@ impl Link<'_> {
     }
 }
 
-/// Returns whether an event is allowed while the vehicle hovers and others flood the link.
+/// Returns whether an event may occur while the vehicle hovers and others flood the link.
 fn is_harmless(event: &Event) -> bool {
     match event {
         Event::Doubt { .. }
@@ -147,7 +147,7 @@ fn flood(packets: usize) {
     let estimator = estimator();
     let mut link = link(&estimator);
     let mut random = Rng::with_seed(16);
-    // The packets are generated in advance, since that would slow the flood down.
+    // The packets are generated in advance, because generating them would slow the flood down.
     let pool: Vec<_> = (0..20_000).map(|_| stranger(&mut random)).collect();
     let mut pick = |_| pool[random.usize(..pool.len())].clone();
     let warm_up = SHARE * 400;

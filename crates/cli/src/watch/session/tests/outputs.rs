@@ -92,7 +92,7 @@ fn motors_on_both_ports_require_recent_values_of_both() {
         bench.pulses(t_s, 1, 0, 1900);
     }
     assert_eq!(bench.motors(), [0.5, 0.5, 0.5, 0.5, 1.0, 1.0]);
-    // The first port's packet is lost.
+    // The packet of the first port is lost.
     bench.pulses(10.04, 1, 0, 1100);
     let motors = bench.motors();
     assert!(motors[..4].iter().all(|command| command.is_nan()));

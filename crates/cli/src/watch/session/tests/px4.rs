@@ -5,7 +5,7 @@ use flagred_flightlog::mavlink::{Packet, dialect::NAMED_VALUE_FLOAT_DATA};
 use super::*;
 
 const PARAM_ERROR: u32 = 345;
-/// CRC_EXTRA of PARAM_ERROR and of EVENT, which the message dialect of this program lacks.
+/// CRC_EXTRA of PARAM_ERROR, a message that the dialect of this program lacks.
 const PARAM_ERROR_EXTRA: u8 = 209;
 
 impl Bench<'_> {
@@ -190,7 +190,7 @@ fn a_vehicle_found_in_the_air_has_a_risk_before_its_parameters_arrive() {
     bench.px4_motors();
     bench.px4_fly(103.8, 2.0, [1500; 4]);
     assert!(bench.session.view().unwrap().latest.unwrap().risk.is_ok());
-    // The flight counts from its first packet on, and only once.
+    // The flight begins at its first packet, and is counted only once.
     let took_off = bench.events.iter().filter_map(|event| match event {
         Event::TookOff { t_s } => Some(*t_s),
         _ => None,
@@ -356,7 +356,7 @@ fn a_value_forwarded_by_px4_is_not_taken_for_another_watch() {
     assert!(echoes > 30, "{echoes}");
     let other = |event: &Event| matches!(event, Event::AnotherWatch { .. });
     assert_eq!(bench.count(other), 0);
-    // A module on board with a risk of its own counts as another watch.
+    // A module on the vehicle that sends a risk of its own counts as another watch.
     bench.px4_fly_and(130.0, 3.0, [1500; 4], |bench, _| {
         bench.hear(&value(voice::RISK, 0.123, 1));
     });
@@ -396,7 +396,7 @@ fn a_warning_is_sent_if_another_watch_does_not_warn() {
     }
 }
 
-/// EVENT, which PX4 sends and this program's dialect lacks.
+/// EVENT is a message that PX4 sends, and that the message dialect of this program lacks.
 #[test]
 fn an_unknown_message_of_the_vehicle_is_ignored() {
     let estimator = estimator();
@@ -454,7 +454,8 @@ fn the_landed_state_overrides_idle_motors() {
     assert_eq!(verdict, Verdict::Known(Level::Fail));
 }
 
-/// The landed state may be outdated; or a pilot who landed stops the motors before the land detector reports it.
+/// The landed state may be outdated. And a pilot who has landed may stop the motors before the land detector reports
+/// the landing.
 #[test]
 fn an_old_landed_state_and_stopped_motors_are_not_a_fall() {
     let silent = cut(|bench| bench.px4_beat());

@@ -79,7 +79,8 @@ fn rates_are_requested_until_they_arrive_also_by_the_old_message() {
     assert_eq!(asks(&bench), (3, 3));
 }
 
-/// Requests apply to all receivers on a link: sufficient rates are not requested, so that no other receiver's attitude slows down.
+/// Requests affect all receivers on a link. Therefore a sufficient rate is not requested, because that could reduce
+/// the rate for another receiver.
 #[test]
 fn a_rate_that_is_high_enough_is_not_requested() {
     let estimator = estimator();
@@ -93,7 +94,7 @@ fn a_rate_that_is_high_enough_is_not_requested() {
             "{motors_hz} Hz, {others_hz} Hz"
         );
     }
-    // Two of three packets are lost: the rate on board is the one that counts.
+    // Two of three packets are lost, but the rate at which the vehicle sends is sufficient.
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(true);
     for i in 0..150_u32 {
@@ -118,7 +119,7 @@ fn the_station_that_slows_the_motor_commands_is_named_once() {
     bench.beat(true);
     bench.all_parameters();
     bench.stream(10.0, 10.0, 25, 5);
-    // An answer to another station changes nothing by itself, and its refusal is not for this watch.
+    // An answer to another station changes nothing by itself, and the refusal in it does not concern this watch.
     bench.hear(&accepted(1, (255, 190), MavResult::MAV_RESULT_UNSUPPORTED));
     bench.hear(&accepted(1, (255, 190), MavResult::MAV_RESULT_ACCEPTED));
     bench.stream(20.0, 5.0, 25, 5);

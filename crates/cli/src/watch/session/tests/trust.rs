@@ -129,7 +129,7 @@ fn a_second_sender_is_reported_once_and_ignored_until_the_first_is_silent() {
     );
     assert_eq!(changed, 1);
     assert!(!bench.session.view().unwrap().link_lost);
-    // The first sender is now the second one.
+    // The original sender now counts as the second one.
     bench.beat(true);
     assert_eq!(bench.session.doubts().second_sender, 301);
     let mut out = SessionOutput::default();
@@ -205,8 +205,8 @@ fn parameters_of_other_components_are_ignored() {
     assert_eq!(bench.session.doubts().other_component, 3);
 }
 
-/// A sender at the vehicle's own address sends two packets for each of the vehicle's. A clock that jumps back is not a reboot
-/// while the original clock continues.
+/// A sender at the vehicle's own address sends two packets for each packet of the vehicle. A clock that jumps back is
+/// not a reboot while the original clock continues.
 #[test]
 fn a_clock_that_jumps_once_is_not_a_reboot() {
     let estimator = estimator();
@@ -287,7 +287,7 @@ fn the_older_of_two_watches_sends_and_the_younger_takes_over() {
     assert_eq!(bench.count(told(None, true)), 1);
     assert!(said_by(&bench) > before + 10);
 
-    // A watch with a shorter running time does not silence it.
+    // Another watch with a shorter running time does not silence this one.
     elder.say(&mut bench, &watch_beat(1.0));
     let before = said_by(&bench);
     bench.hover(30.0, 4.0, 1950);
