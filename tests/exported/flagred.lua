@@ -4,9 +4,9 @@
 -- FR_RISK and FR_ELEV in %, and a text when the level changes. It changes nothing on the vehicle. Installation, cost and
 -- tests: docs/firmware.md of FLAGRED.
 --
--- An error while ArduPilot loads a script blocks arming. So ArduPilot compiles only this loader; the rest of the file is a
--- comment to it. The loader reads the file again and compiles it part by part, which takes less memory than all at once, and
--- where that fails, it sends a text and ends. Parts end at a form feed; this table is their environment.
+-- An error while ArduPilot loads a script blocks arming. Therefore ArduPilot compiles only this loader; the rest of the file is
+-- a comment. The loader reads the file again and compiles it part by part, which takes less memory than all at once. If that
+-- fails, it sends a text and ends. Each part ends at a form feed. The parts share this table as their environment.
 
 local shared = {
   floor = math.floor, sqrt = math.sqrt, exp = math.exp, abs = math.abs, huge = math.huge, min = math.min, max = math.max,
@@ -15,8 +15,8 @@ local shared = {
   gcs = gcs, param = param, micros = micros, vehicle = vehicle, logger = logger, SRV_Channels = SRV_Channels,
 }
 local PARTS = {"motors", "setup", "geometry", "start", "windows", "rules", "inputs", "levels", "notices", "balance", "flight", "calls", "elevated", "words", "texts"}
-local number, chunk = 1, nil -- of the next part; what is compiled of it
-local file, is_over = nil, false -- whether the part has ended
+local number, chunk = 1, nil -- the number of the next part, and the part once it is compiled
+local file, is_over = nil, false -- the file of this script, and whether the part that is being read has ended
 
 local function open()
   if not load then
@@ -32,7 +32,7 @@ local function open()
   end
 end
 
--- The next line of a part, which stands in a comment; nil at its end.
+-- The next line of a part, without the mark that makes it a comment; nil at the end of the part.
 local function line()
   if is_over then
     return nil
@@ -45,7 +45,7 @@ local function line()
   return not is_over and string.sub(found, 4) or nil
 end
 
--- Compiles the next part, or runs what is compiled. Returns whether there is more to do.
+-- Compiles the next part, or runs the part that was compiled. Returns whether there is more to do.
 local function go_on()
   if chunk then
     local part = chunk
@@ -86,12 +86,12 @@ end
 return load_all, 1000
 
 -- 
--- -- Time. Whole microseconds that wrap after 71 min; only differences of under 35 min are used.
+-- -- Time, in whole microseconds. It wraps after 71 min, so only differences below 35 min are used.
 -- 
 -- clock_us = 0
 -- held_us, held_s = 0, 0.0 -- since the last call
--- bin, bin_us = 0, 0 -- the bin of commands, and the time into it
--- has_moved = false -- whether this call has done one of the longer steps
+-- bin, bin_us = 0, 0 -- the number of the current bin of commands, and the time since its start
+-- has_moved = false -- whether this call has run `move_shift`, which takes long
 -- 
 -- function later(us, by_us)
 --   return us < 1000000000 and us + by_us or us
@@ -99,13 +99,13 @@ return load_all, 1000
 -- 
 -- -- Motors. A command is 0 at the lower limit of the range that is used in flight, 1 at the upper one.
 -- 
--- motors, functions, numbers = 0, {}, {} -- how many; function and number of each output
+-- motors, functions, numbers = 0, {}, {} -- the number of motors; the output function and the motor number of each
 -- command = {}
 -- local low_us, scale = 1000.0, 0.001
 -- less_yaw = {} -- the commands without the part that turns the nose
 -- margin = {} -- how far each motor is from its nearer limit
 -- yaw_factor, has_geometry = {}, false
--- opposite = {} -- the motor on the other side; nil where there is none
+-- opposite = {} -- the opposite motor of each motor; nil if there is none
 -- 
 -- local function pair(low, high, least, most, width)
 --   low, high = low and param:get(low), high and param:get(high)
@@ -114,8 +114,8 @@ return load_all, 1000
 --   end
 -- end
 -- 
--- -- Reads MOT_PWM_MIN and MAX, or the range of the throttle's channel, and the part of it from MOT_SPIN_MIN to MAX. Returns the
--- -- limits in us; nil where they are not valid.
+-- -- Reads the range from MOT_PWM_MIN and MOT_PWM_MAX or from the throttle channel, and the part of it that MOT_SPIN_MIN and
+-- -- MOT_SPIN_MAX limit. Returns the limits in us; nil if they are not valid.
 -- function read_limits()
 --   local own = param:get("MOT_PWM_MIN")
 --   local low, high
@@ -135,9 +135,9 @@ return load_all, 1000
 --   return low_us, low_us + 1 / scale
 -- end
 -- 
--- -- The sum is nil where the commands are unknown.
+-- -- Reads the commands. Their sum is nil if one of them is unknown.
 -- function read_commands()
---   -- Locals take fewer instructions.
+--   -- Access to local variables takes fewer instructions.
 --   local low_us, scale, command, functions, channels = low_us, scale, command, functions, SRV_Channels
 --   local margin = margin
 --   local total = 0.0
@@ -171,7 +171,7 @@ return load_all, 1000
 --   end
 -- end
 -- 
--- -- `sum` is that of the list; nil adds it up.
+-- -- `sum` is the sum of the list; if it is nil, it is computed here.
 -- function deviation_of(list, sum)
 --   local mean, square = sum or 0.0, 0.0
 --   for i = 1, sum and 0 or motors do
@@ -218,7 +218,7 @@ return load_all, 1000
 -- end
 -- 
 -- local function output(motor_function)
---   -- Older firmware has fewer functions, and refuses the others.
+--   -- Older firmware has fewer functions, and fails for the others.
 --   local is_known, pwm = pcall(SRV_Channels.get_output_pwm, SRV_Channels, motor_function)
 --   return is_known and pwm
 -- end
@@ -235,7 +235,7 @@ return load_all, 1000
 --   end
 -- end
 -- 
--- -- How many motors the frame has, by FRAME_CLASS; by the highest number of a motor where the class is not in the list.
+-- -- The number of motors of the frame, by FRAME_CLASS; if the class is not in the list, the highest motor number.
 -- local function motors_of_frame()
 --   local MOTORS_OF = {[1] = 4, [2] = 6, [3] = 8, [4] = 8, [5] = 6, [7] = 3, [12] = 12, [14] = 10}
 --   return MOTORS_OF[param:get("FRAME_CLASS") or 0] or numbers[motors] or 0
@@ -245,14 +245,14 @@ return load_all, 1000
 -- find_motors()
 -- local expected = motors_of_frame()
 -- if motors > 0 and motors < expected then
---   -- The risk of the other motors would be called GOOD.
+--   -- Otherwise the level would be GOOD even if one of the other motors is at a limit.
 --   error(format("only %d of %d motors have outputs", motors, expected), 0)
 -- end
 -- if motors == 0 or not read_limits() then
 --   error("no motors or no limits", 0)
 -- end
 -- 
--- -- The geometry, read once.
+-- -- The geometry of the motors, read once.
 -- 
 -- -- The frames of ArduPilot: class and type, name, and number, roll, pitch and yaw factor of each motor. One text, since many
 -- -- short ones take more memory to load.
@@ -338,7 +338,7 @@ return load_all, 1000
 -- 14/14 DECA/CW_X 1: -0.309017 1 1 2: -0.809017 0.618034 -1 3: -1 0 1 4: -0.809017 -0.618034 -1 5: -0.309017 -1 1 6: 0.309017 -1 -1 7: 0.809017 -0.618034 1 8: 1 0 -1 9: 0.809017 0.618034 1 10: 0.309017 1 -1
 -- ]]
 -- 
--- -- Solves four equations by elimination with pivots; nil where they do not have one solution.
+-- -- Solves four equations by elimination with pivots; nil if they have no unique solution.
 -- local function solve(rows, right)
 --   for step = 1, 4 do
 --     local pivot = step
@@ -369,7 +369,7 @@ return load_all, 1000
 --   return right
 -- end
 -- 
--- -- How much of an effort (1 roll, 2 pitch, 3 yaw, 4 thrust) a unit of command of each motor is: the axis' row of the
+-- -- The effort about an axis (1 roll, 2 pitch, 3 yaw, 4 thrust) per unit of command of each motor: the row of this axis in the
 -- -- pseudo-inverse of all factors.
 -- local function shares_of(factors, axis)
 --   local rows, right = {}, {0.0, 0.0, 0.0, 0.0}
@@ -398,7 +398,7 @@ return load_all, 1000
 --   return shares
 -- end
 -- 
--- -- The motor on the other side of the middle; of two on one arm the one that turns the same way.
+-- -- Finds the opposite motor of each motor. If two motors share the opposite arm, it is the one that turns the same way.
 -- local function find_opposites(factors)
 --   for i, motor in ipairs(factors) do
 --     local least = huge
@@ -442,23 +442,23 @@ return load_all, 1000
 -- 
 -- -- The windows, made once.
 -- 
--- windows, inputs = {}, {} -- the inputs are rows
+-- windows, inputs = {}, {} -- each input is a row of a window
 -- 
 -- local NOTHING = {}
 -- 
--- -- A list of numbers, one for each slot, which add up. Its constructor has room for all, since a table that grows takes twice the
--- -- memory; a slot that was never used is nil.
+-- -- A list with a number for each slot; the numbers are added up. It is allocated at its full length, because a table that grows
+-- -- takes twice the memory. A slot that was never used is nil.
 -- local function new_list(window)
 --   local list = {middle = 0.0, back = 0.0, unpack(NOTHING, 1, window.capacity)}
 --   window.lists[#window.lists + 1] = list
 --   return list
 -- end
 -- 
--- -- `capacity` is the most slots in use at once.
+-- -- `capacity` is the maximum number of slots in use at once.
 -- local function new_window(length_s, capacity)
 --   local window = {
 --     length_us = floor(length_s * 1000000), needed_s = 0.99 * min(500000 * 1e-6, length_s), capacity = capacity,
---     number = 0, phase = 0, -- the slot of the present, and 128 times the time into it
+--     number = 0, phase = 0, -- the number of the current slot, and 128 times the time since its start
 --     oldest = 1, newest = 0, newest_number = nil, slots = 0, front = 0, middle = 0, back = 0, turning = 0, unturned = 0,
 --     samples = 0, start_us = 0, back_since_us = 0, is_full = false,
 --     end_us = {unpack(NOTHING, 1, capacity)}, lists = {}, rows = {},
@@ -470,7 +470,7 @@ return load_all, 1000
 -- end
 -- 
 -- -- A statistic of a window: the "mean", the "spread" about the mean, the "lowest" or the "highest" value. `x` is the value
--- -- of a sample, nil where it is unknown, and `within` the variance that one sample has in itself.
+-- -- of a sample, nil if it is unknown, and `within` the variance within that sample.
 -- local function new_row(window, kind)
 --   local row = {kind = kind, x = nil, within = 0.0, shift = nil, bin_sum = 0.0, before = nil, sum = nil, square = nil}
 --   row.square = kind == "spread" and new_list(window, nil, 0.0) or nil
@@ -492,10 +492,10 @@ return load_all, 1000
 -- risks = new_window(3.0, 104)
 -- new_row(risks, "spread")
 -- 
--- -- Windows: sums over the last seconds, in slots of time in which samples are merged. The slots lie in a ring, in three runs: the
--- -- front, of whose slots each holds the sum of itself and the later ones of the front; the middle, which is made the same, two
--- -- slots a call; and the back, to which slots are added. So a call costs the same whatever the length, and as nothing is
--- -- subtracted from a sum that stays, nothing drifts.
+-- -- Windows: sums over the last seconds, in slots of time that merge samples. The slots form a ring with three parts. In the front,
+-- -- each slot contains the sum of itself and all later slots of the front. The middle is converted to the same form, two slots per
+-- -- call. New slots are added to the back. Thus the cost of a call does not depend on the length of the window, and rounding errors
+-- -- do not accumulate, because nothing is subtracted from a sum that is kept.
 -- 
 -- function clear(window)
 --   window.slots, window.front, window.middle, window.back, window.unturned = 0, 0, 0, 0, 0
@@ -518,7 +518,7 @@ return load_all, 1000
 --   end
 -- end
 -- 
--- -- Makes slots of the middle hold the sum of themselves and the later ones.
+-- -- Converts up to `count` slots of the middle, so that each contains the sum of itself and the later ones.
 -- local function sum_middle(window, count)
 --   while count > 0 and window.unturned > 0 do
 --     local later_slot = window.turning
@@ -530,7 +530,7 @@ return load_all, 1000
 --   end
 -- end
 -- 
--- -- Where the front has run out, the middle becomes the front.
+-- -- If the front is empty, the middle becomes the front.
 -- local function keep_a_front(window)
 --   if window.front > 0 then
 --     return
@@ -546,18 +546,18 @@ return load_all, 1000
 --   end
 -- end
 -- 
--- -- Drops what ended so long ago or longer.
+-- -- Drops slots that ended at least this long ago.
 -- function drop_older(window, us)
 --   while window.slots > 0 and clock_us - window.end_us[window.oldest] >= us do
 --     keep_a_front(window)
 --     window.oldest = window.oldest % window.capacity + 1
 --     window.front, window.slots = window.front - 1, window.slots - 1
---     -- Not fewer than that many samples are left.
+--     -- At least one sample per slot is left; the exact number is not stored.
 --     window.samples = window.slots
 --   end
 -- end
 -- 
--- -- The slot for what ended at a time in a slot of that number.
+-- -- The slot for a sample that ended at `end_us`: the newest slot if it has this number or the ring is full, otherwise a new one.
 -- local function slot_of(window, number, end_us)
 --   if window.slots == 0 or window.newest_number ~= number and window.slots < window.capacity then
 --     if window.middle == 0 and window.back > 1 and 2 * (clock_us - window.back_since_us) >= window.length_us then
@@ -585,7 +585,7 @@ return load_all, 1000
 --   list[slot], list.back = list[slot] + x, list.back + x
 -- end
 -- 
--- -- Puts a value into a slot. Spreads are sums about a value near the mean, which keeps their digits.
+-- -- Adds a value to a slot. The sums of a spread are relative to a value near the mean, which preserves their precision.
 -- local function merge(row, slot, held, x, rest)
 --   if row.kind == "mean" then
 --     put(row.sum, slot, held * x)
@@ -597,8 +597,8 @@ return load_all, 1000
 --   end
 -- end
 -- 
--- -- The value of the latest bin, and its rest: of a spread the noise, half of the squared step from the bin before, is taken
--- -- away; of a mean, the squared step itself is the value.
+-- -- The value of the latest bin, and a second number: for a mean, the squared step from the bin before, whose mean is computed;
+-- -- for a spread, minus half of that squared step, which removes the noise from the variance.
 -- local function of_bin(window, row)
 --   local x = row.bin_sum / window.bin_samples
 --   local step = row.before and x - row.before or 0.0
@@ -646,7 +646,7 @@ return load_all, 1000
 --   end
 -- end
 -- 
--- -- The numbers of a list together, without a share of the oldest slot.
+-- -- The sum of a list, without the share `out` of its oldest slot.
 -- function total_of(window, list, out)
 --   local sum = list.middle + list.back
 --   if window.front > 0 then
@@ -673,7 +673,7 @@ return load_all, 1000
 --   return inside_s < own and 1 - inside_s / own or 0.0
 -- end
 -- 
--- -- Sums about another value.
+-- -- Changes the value that the sums of a row are relative to.
 -- local function move_shift(row, window, by)
 --   local sum, square, weight = row.sum, row.square, window.weight
 --   for slot = 1, window.capacity do
@@ -689,7 +689,7 @@ return load_all, 1000
 --   row.shift = row.shift + by
 -- end
 -- 
--- -- The mean, the lowest or the highest value; for a spread the mean and the variance.
+-- -- The mean, the lowest or the highest value of a row; for a spread, the mean and the variance.
 -- function read_row(window, row, total, out)
 --   local kind, held = row.kind, window.bin_held
 --   local sum = total_of(window, row.sum, out)
@@ -729,7 +729,7 @@ return load_all, 1000
 -- local strengths, degrees = {}, {} -- of output terms, and of terms in conditions
 -- is_filled = false
 -- 
--- -- Along the corners x1, degree 1, x2, degree 2 and so on.
+-- -- The degree at x, interpolated between the corners: x1, degree 1, x2, degree 2 and so on.
 -- local function along(corners, x)
 --   local count = #corners
 --   if x < corners[1] then
@@ -841,9 +841,9 @@ return load_all, 1000
 -- 
 -- -- The inputs of the rules.
 -- 
--- value = {} -- of the inputs; nil where one is unknown
+-- value = {} -- the values of the inputs; nil if unknown
 -- 
--- -- Takes in a sample of flight.
+-- -- Adds a sample in flight to the windows.
 -- function observe()
 --   local inputs, value, windows = inputs, value, windows
 --   local deviation_of_less_yaw = sum and deviation_of(less_yaw) or nil
@@ -863,7 +863,7 @@ return load_all, 1000
 --   take_sample(windows[4], held_s)
 -- end
 -- 
--- -- The seconds that are known of a window and the share of its oldest slot that has left it; nil where too little is known.
+-- -- The known seconds of a window, and the share of its oldest slot that has left the window; nil if too little is known.
 -- local function enough(window)
 --   local out = outside(window)
 --   local total = total_of(window, window.weight, out) + window.bin_held
@@ -874,7 +874,7 @@ return load_all, 1000
 --   return total, out
 -- end
 -- 
--- -- The inputs' values; false where one is not known.
+-- -- Computes the inputs. The result is false or nil if an input that the risk depends on is unknown.
 -- function read_inputs()
 --   local inputs, value, windows = inputs, value, windows
 --   local all, total, out = true, nil, nil
@@ -903,9 +903,9 @@ return load_all, 1000
 --   return all
 -- end
 -- 
--- -- Levels: raised after a while, held, lowered after a while.
+-- -- Levels, which are raised after some time, held, and lowered after some time.
 -- 
--- -- What each rule is about: the area and the centre of its consequent, what a pilot reads, whether motors are at a limit.
+-- -- For each rule: area and centre of its consequent, two texts for the pilot, and whether its cause is motors near a limit.
 -- CAUSES = {
 --   {5.0, 95.0, "motors at limits", "", true}, -- 1
 --   {5.0, 95.0, "sudden change", "", false}, -- 2
@@ -921,14 +921,14 @@ return load_all, 1000
 -- }
 -- warn_risk, fail_risk = 62.0, 80.0 -- parameters may change them
 -- risk_level = 0 -- of the risk alone
--- local reached_at = {} -- since when the thresholds of each level are reached
--- local held_at = 0 -- when something last held the level
--- is_open, by_elevated, by_fall = false, false, false -- the time of trouble
+-- local reached_at = {} -- the time since which the threshold of each level has been reached
+-- local held_at = 0 -- the last time at which the risk held the level
+-- is_open, by_elevated, by_fall = false, false, false -- whether a finding is open, and whether elevated risk or a fall raised it
 -- local open_level = 0
--- local seen, mean_margin, least_margin = 0, {}, {} -- the motors while a level is being reached
+-- local seen, mean_margin, least_margin = 0, {}, {} -- margins of the motors since a threshold was first reached
 -- is_upper = {} -- whether the limit that each motor was nearest to is the upper one
 -- 
--- -- The rule that raises the risk most: the largest share of it, above half of its value.
+-- -- The rule that raises the risk most: the one with the largest product of strength, area and (centre - risk / 2).
 -- local function find_cause(risk)
 --   if is_filled then
 --     return nil
@@ -955,7 +955,7 @@ return load_all, 1000
 --   return false, false
 -- end
 -- 
--- -- The motor with the least mean margin, where it is near a limit; of motors at zero the one that is there for longest.
+-- -- The motor with the least mean margin; nil if it is not near a limit. Among motors at zero, the one that stopped first.
 -- local function weakest()
 --   local found
 --   for i = 1, motors do
@@ -981,7 +981,7 @@ return load_all, 1000
 --   is_open = true
 -- end
 -- 
--- -- A level that is reached now; returns what holds it.
+-- -- Raises a level if its threshold has been reached for long enough. Returns the highest level that the risk holds so far.
 -- local function follow(level, held, risk, can_raise, risk_limit, elevated_limit, after_us, until_risk, until_elevated)
 --   local reached, of_elevated = is_reached(risk, risk_limit, elevated_limit)
 --   reached = reached and can_raise
@@ -1000,7 +1000,7 @@ return load_all, 1000
 --   return held
 -- end
 -- 
--- -- Keeps what the motors do while a level is being reached, from its beginning.
+-- -- Records the margins of the motors while the threshold of a level is reached, from the time at which it is first reached.
 -- local function watch_motors(risk, takes_off)
 --   local warns = not takes_off and is_reached(risk, warn_risk, 60.0)
 --   local fails = is_reached(risk, fail_risk, nil)
@@ -1023,14 +1023,14 @@ return load_all, 1000
 --   end
 -- end
 -- 
--- -- The lower of a risk that ends a level and the one that raises it.
+-- -- The risk that holds a level: not above the risk that raises it, which a parameter may have lowered.
 -- local function lower(until_risk, risk)
 --   return until_risk and risk and min(until_risk, risk) or until_risk
 -- end
 -- 
--- doubt_us = nil -- since an alarm: for how long the motors have worked as before
+-- doubt_us = nil -- after an alarm: how long the motors have worked as before it
 -- 
--- -- After an alarm the level is GOOD again when the motors have worked as before for as long as a level is held.
+-- -- After an alarm, the level is GOOD again once the motors have worked as before it for the time after which a level is cleared.
 -- local function doubt()
 --   local is_back = true
 --   is_back = works_as_before()
@@ -1063,11 +1063,11 @@ return load_all, 1000
 --   reached_at[2], reached_at[3] = nil, nil
 -- end
 -- 
--- -- Notices besides the risk, as WARN until the flight ends.
+-- -- Notices that are not about the risk. They keep the level at WARN or above until the flight ends.
 -- 
--- raised = false -- whether something was raised in this call
+-- raised = false -- whether a notice was raised in this call
 -- 
--- -- A moving average; until its time constant has passed, the plain mean.
+-- -- A moving average; until its time constant has passed, it is the plain mean.
 -- local function new_average()
 --   return {value = 0.0, known = 0.0}
 -- end
@@ -1115,12 +1115,12 @@ return load_all, 1000
 -- -- The balance of the motors: a motor that works harder than before, and whether all work as before.
 -- 
 -- local lately, trims, shifts = {}, {}, {} -- of each motor
--- at_zero = {} -- for how long each motor is at zero, in s
+-- at_zero = {} -- how long each motor has been at zero, in s
 -- local lately_s, trim_s, load, load_s = 0.0, 0.0, 0.0, 0.0
 -- local imbalance_us, weak_us -- for how long the limits have been exceeded
--- imbalance, imbalance_words = nil, nil -- in %, and what it is
--- unbalanced, or_unbalanced = nil, nil -- the motor that is named, and the one that it may be as well
--- weak, weak_motor, or_weak = nil, nil, nil -- in %, and as above
+-- imbalance, imbalance_words = nil, nil -- the imbalance in %, and its kind
+-- unbalanced, or_unbalanced = nil, nil -- the unbalanced motor, and a second one that may be it instead
+-- weak, weak_motor, or_weak = nil, nil, nil -- the extra command of a weak motor in %, the motor, and a second one that may be it
 -- sinks = false
 -- local is_back = false
 -- 
@@ -1129,7 +1129,7 @@ return load_all, 1000
 --   return held_s / max(min(known_s, constant_s), held_s)
 -- end
 -- 
--- -- Whether the motors are no farther apart than in the last seconds. In a fall they are.
+-- -- Whether the commands of the motors differ no more than in the last seconds. In a fall they differ more.
 -- function is_together()
 --   if lately_s < 5.0 or not sum then
 --     return true
@@ -1155,8 +1155,8 @@ return load_all, 1000
 --   return first, second
 -- end
 -- 
--- -- The motor to name, and the other one that it may be: the highest one if it is well above the others; otherwise the one that
--- -- stopped first; otherwise the highest one.
+-- -- The motor to name, and a second one if the numbers do not show which of the two it is. It is the highest one if that is well
+-- -- above the others; otherwise the one that stopped first; if none stopped, the highest one.
 -- local function culprit(list)
 --   local first, second = two_highest(list)
 --   local ahead = second and list[first] - list[second] or huge
@@ -1178,7 +1178,7 @@ return load_all, 1000
 --   return true
 -- end
 -- 
--- -- The yaw effort that numbers of the motors amount to.
+-- -- The yaw effort of a list with a number for each motor.
 -- local function yaw_of(list)
 --   local yaw = 0.0
 --   if has_geometry then
@@ -1189,7 +1189,7 @@ return load_all, 1000
 --   return yaw
 -- end
 -- 
--- -- How far a motor is at most above the one opposite.
+-- -- The largest amount by which a motor exceeds the opposite one, except for the part due to yaw.
 -- local function at_odds()
 --   local yaw, most = yaw_of(lately), 0.0
 --   for i = 1, motors do
@@ -1277,12 +1277,12 @@ return load_all, 1000
 --   end
 -- end
 -- 
--- -- Whether all motors work as before the alarm; without a trim from before it, whether they work alike.
+-- -- Whether all motors work as before the alarm; if no trims were learned before it, whether all motors work alike.
 -- function works_as_before()
 --   return is_back
 -- end
 -- 
--- -- A new flight may begin.
+-- -- Forgets the trims, because a new flight may begin.
 -- function forget_trims()
 --   if trim_s > 0 then
 --     trims, trim_s = {}, 0.0
@@ -1296,15 +1296,15 @@ return load_all, 1000
 -- 
 -- -- A flight.
 -- 
--- flown_us = nil -- since take-off; nil on the ground
--- down_us = nil -- for how long it seems to be on the ground
+-- flown_us = nil -- time since take-off; nil on the ground
+-- down_us = nil -- how long the vehicle has seemed to be on the ground
 -- local settled, settling = false, huge -- whether the take-off is dropped, and the window to drop it from next
--- local idle -- "landing" or "trouble"
--- local lifted_us -- since the motors last did not idle; nil since the land detector last reported the ground
+-- local idle -- why the motors idle: "landing" or "trouble"
+-- local lifted_us -- time since the motors last did not idle; nil if the land detector has reported the ground since then
 -- falls = false -- whether the motors idle in the air
--- local since_high_us, unknown_us -- since a high risk, and since a risk was known
+-- local since_high_us, unknown_us -- time since the risk was last high, and since it was last known
 -- 
--- -- Resets the state after a flight or a gap. After a gap in the air, trims and the doubt about an alarm stay.
+-- -- Resets the state after a flight or a gap. After a gap in the air, the trims are kept, and an alarm stays as a doubt.
 -- function forget(is_gap)
 --   lifted_us = not is_gap and lifted_us or nil
 --   local was_alarm = is_gap and level_now() > 0
@@ -1321,7 +1321,7 @@ return load_all, 1000
 --   end
 -- end
 -- 
--- -- Whether the vehicle is on the ground: by the land detector, or because the motors idle, before take-off and after a flight that
+-- -- Whether the vehicle is on the ground: the land detector reports it, or the motors idle before take-off or after a flight that
 -- -- was calm to its end. While the command of a motor is unknown, the vehicle counts as in the air.
 -- local function rests()
 --   local fell = falls
@@ -1337,7 +1337,7 @@ return load_all, 1000
 --     idle, lifted_us = nil, 0
 --     return false
 --   end
---   -- While an alarm is raised, the rules decide.
+--   -- While the level is not GOOD, a new fall is not detected: the risk is that of the rules.
 --   falls = (fell or risk_level == 0) and lifted_us ~= nil and lifted_us >= 3000000
 --   if not idle then
 --     local is_trouble = since_high_us and since_high_us <= 2000000
@@ -1347,7 +1347,7 @@ return load_all, 1000
 --   return idle == "landing" and not falls
 -- end
 -- 
--- -- Some time after take-off, drops it from the long windows, one a call, and from the elevated risk.
+-- -- Some time after take-off, drops the take-off from the elevated risk and from the long windows, one window per call.
 -- local function settle()
 --   if not settled and flown_us >= 3000000 + 500000 then
 --     settled, settling = true, 1
@@ -1361,7 +1361,7 @@ return load_all, 1000
 --     if window.length_us > 3000000 then
 --       local samples = window.samples
 --       drop_older(window, flown_us - 3000000 - 1)
---       -- Slots that stay hold more than a sample each; calls come often enough for that many.
+--       -- The remaining slots contain several samples each; calls are frequent enough for at least this number.
 --       window.samples = max(window.samples, min(samples, 5))
 --       return
 --     end
@@ -1397,7 +1397,7 @@ return load_all, 1000
 --         forget(false)
 --       end
 --     else
---       -- It landed in a gap.
+--       -- The vehicle may have landed during a gap.
 --       doubt_us = nil
 --       forget_trims()
 --     end
@@ -1432,10 +1432,10 @@ return load_all, 1000
 --   return risk
 -- end
 -- 
--- -- The calls.
+-- -- The functions that ArduPilot calls.
 -- 
 -- local is_enabled = true
--- local last_call -- the autopilot's clock
+-- local last_call -- the time of the last call on the autopilot's clock
 -- local sent_us, logged_bin, settings_us = 1000000000, -1, 0
 -- local has_failed = false
 -- 
@@ -1476,7 +1476,7 @@ return load_all, 1000
 --   if level ~= before and flown_us and not down_us then
 --     say(level, risk, false)
 --   end
---   -- A notice that is raised at the current level is reported, too.
+--   -- A notice that does not change the level is reported, too.
 --   if raised and level == before and flown_us and not down_us then
 --     say(level, risk, true)
 --   end
@@ -1493,7 +1493,7 @@ return load_all, 1000
 --   end
 -- end
 -- 
--- -- An error that leaves a script stops it and blocks arming.
+-- -- Catches errors: an error that is not caught would stop the script and block arming.
 -- function protected()
 --   local is_well, told = pcall(update)
 --   if is_well then
@@ -1507,7 +1507,7 @@ return load_all, 1000
 --   return protected, 1000
 -- end
 -- 
--- -- The first call, when the memory of the loader is free again. Memory for the temporary values of a call must remain.
+-- -- The first call, after the memory of the loader was freed. Checks that enough memory remains for the temporary values of calls.
 -- function begin()
 --   begin = nil
 --   if not pcall(rep, " ", 3000) then
@@ -1518,7 +1518,7 @@ return load_all, 1000
 --   return protected, 30
 -- end
 -- 
--- -- The elevated risk: what the risks of the last seconds add up to. Its window is `risks`, with one row.
+-- -- The elevated risk, which accumulates while the risks of the last seconds are high. Its window is `risks`, which has one row.
 -- 
 -- elevated = 0.0
 -- local last_risk, last_rate
@@ -1528,7 +1528,7 @@ return load_all, 1000
 --   elevated, last_risk, last_rate = 0.0, nil, nil
 -- end
 -- 
--- -- Abramowitz and Stegun 7.1.26, right to 1.5e-7.
+-- -- Abramowitz and Stegun, formula 7.1.26: the error is at most 1.5e-7.
 -- local function erf(x)
 --   local t = 1 / (1 + 0.3275911 * abs(x))
 --   local y = 1 - ((((1.061405429 * t - 1.453152027) * t + 1.421413741) * t - 0.284496736) * t + 0.254829592) * t * exp(-x * x)
@@ -1560,7 +1560,7 @@ return load_all, 1000
 --   end
 -- end
 -- 
--- -- What the pilot reads, in at most 50 characters.
+-- -- The level and the cause that the pilot reads, in texts of at most 50 characters.
 -- 
 -- function level_now()
 --   local level = risk_level
@@ -1569,7 +1569,7 @@ return load_all, 1000
 --   return doubt_us and max(level, 2) or level
 -- end
 -- 
--- -- A cause in two parts; where there is no room for the last one, the first one is true alone.
+-- -- The cause in two parts; if there is no space for the second part, the first part is used alone.
 -- function cause_in_words()
 --   local about = cause and CAUSES[cause]
 --   if not about then

@@ -85,8 +85,9 @@ pub static RULES: ::fuzzy::table::Table<'static> = {
             Program { weight: 1.0, first_step: 5, end_step: 6, first_action: 9, end_action: 11, first_hedge: 0, end_hedge: 0 },
         ],
         steps: &[
-            AntecedentStep { op: Op(0), literal: 0 }, AntecedentStep { op: Op(1), literal: 3 }, AntecedentStep { op: Op(0), literal: 1 },
-            AntecedentStep { op: Op(0), literal: 2 }, AntecedentStep { op: Op(1), literal: 4 }, AntecedentStep { op: Op(0), literal: 5 },
+            AntecedentStep { op: Op(0), literal: 0 }, AntecedentStep { op: Op(1), literal: 3 },
+            AntecedentStep { op: Op(0), literal: 1 }, AntecedentStep { op: Op(0), literal: 2 },
+            AntecedentStep { op: Op(1), literal: 4 }, AntecedentStep { op: Op(0), literal: 5 },
         ],
         blocks: &[],
         outputs: &[

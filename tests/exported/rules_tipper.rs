@@ -75,8 +75,9 @@ pub static RULES: ::fuzzy::table::Table<'static> = {
             Program { weight: 1.0, first_step: 4, end_step: 5, first_action: 2, end_action: 3, first_hedge: 0, end_hedge: 0 },
         ],
         steps: &[
-            AntecedentStep { op: Op(0), literal: 0 }, AntecedentStep { op: Op(2), literal: 3 }, AntecedentStep { op: Op(0), literal: 2 },
-            AntecedentStep { op: Op(2), literal: 4 }, AntecedentStep { op: Op(0), literal: 1 },
+            AntecedentStep { op: Op(0), literal: 0 }, AntecedentStep { op: Op(2), literal: 3 },
+            AntecedentStep { op: Op(0), literal: 2 }, AntecedentStep { op: Op(2), literal: 4 },
+            AntecedentStep { op: Op(0), literal: 1 },
         ],
         blocks: &[],
         outputs: &[

@@ -93,7 +93,7 @@ export interface ExplainedOutput {
   rules: Share[];
   /** The degree of the value in each term; empty for Takagi-Sugeno outputs. */
   terms: Degree[];
-  /** The aggregated set, with interval type-2 terms the upper one: `(value, degree)` at evenly spaced values over the range, or at the singletons. Empty for Takagi-Sugeno and Tsukamoto outputs. */
+  /** The aggregated set; with interval type-2 terms, the upper one. It is a list of `(value, degree)` at evenly spaced values over the range, or at the singletons. Empty for Takagi-Sugeno and Tsukamoto outputs. */
   set: [number, number][];
 }
 
@@ -162,7 +162,7 @@ export interface FlightFinding {
   severity: Level;
   /** The time at which the level was first reached, in seconds. */
   from_s: number;
-  /** The time at which the level was first raised, in seconds: `after_s` of that level later. */
+  /** The time at which the level was first raised, in seconds: `after_s` of the level after it was first reached. */
   raised_s: number;
   /** The time at which the level was raised to FAIL, in seconds; null if it was not. */
   failed_s: number | null;
@@ -205,7 +205,7 @@ export interface Followed {
 /** The format of a flight log. */
 export type Format = string;
 
-/** Counts of the data beyond the limits of what is kept. No real flight reaches a limit; damaged and malicious logs may. */
+/** Amounts of data that were left out because a limit was reached. No real flight reaches a limit; damaged and malicious logs may. */
 export interface LeftOutCounts {
   /** Texts after the first 10,000. */
   texts: number;
@@ -213,9 +213,9 @@ export interface LeftOutCounts {
   modes: number;
   /** Values of parameters after the first 16,384 names, and those with names longer than 64 bytes. */
   parameters: number;
-  /** Changes of armed and in the air after the first 10,000 of each, if they are derived from the commands. The time after them does not count as in the air. */
+  /** Changes of the armed state and of the in-air state after the first 10,000 of each, if they are derived from the commands. The time after them does not count as in the air. */
   changes: number;
-  /** Messages after the flight has reached a limit: 67,108,864 numbers, 10,000 events of arming and flying, or 1,000 boots. The flight ends there. */
+  /** Messages after the flight has reached a limit: 67,108,864 numbers, 10,000 changes of the armed or in-air state, or 1,000 boots. The flight ends there. */
   messages: number;
 }
 
@@ -372,7 +372,7 @@ export interface Report {
   truncated: boolean;
   /** The first reason why bytes were skipped or a message was rejected. */
   reason: string | null;
-  /** The data beyond the limits of what is kept. */
+  /** The amounts of data that were left out because a limit was reached. */
   left_out: LeftOutCounts;
 }
 
