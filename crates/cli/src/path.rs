@@ -49,9 +49,12 @@ pub(crate) fn missing(shown: &str) -> String {
     let near = || nearest(&name, names.iter().map(String::as_str));
     match same_stem.map(String::as_str).or_else(near) {
         Some(near) => format!("did you mean `{}`?", folder.join(near).display()),
-        None => "check the path".to_owned(),
+        None => CHECK.to_owned(),
     }
 }
+
+/// Advice for a file that does not exist and resembles no other.
+pub(crate) const CHECK: &str = "check the path";
 
 /// Whether a command has an option of this name.
 fn is_option(name: &str) -> bool {

@@ -112,7 +112,12 @@ pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnosti
             .map(|one| at.counterexample(one)),
     );
     found.extend(report.jumps.iter().map(|one| at.jump(one)));
-    effects::of(model, &at, &mut found);
+    let without_value = effects::of(model, &at, &mut found);
+    // Near a pole, an output takes values that were not evaluated.
+    found.retain(|finding| {
+        let is_about = |name: &String| finding.message.starts_with(&format!("`{name}` "));
+        finding.code != "narrow-reach" || !without_value.iter().any(is_about)
+    });
     found.extend(at.unexamined(report));
     found
 }

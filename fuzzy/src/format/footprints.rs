@@ -48,7 +48,7 @@ pub(super) fn extended(
         return Some(term);
     }
     if let Some(entry) = blur {
-        let share = share(&format!("`blur` of {what}"), entry.value, findings)?;
+        let share = share(&format!("`blur` of {what}"), entry.value, variable, findings)?;
         return blurred(what, &term, share, variable, entry.value, spans, findings);
     }
     let scale = match scale {
@@ -128,7 +128,7 @@ pub(super) fn blur_partition(
     spans: &mut VariableSpans,
     findings: &mut Vec<Diagnostic>,
 ) {
-    let Some(share) = share(&format!("`blur` of {what}"), node, findings) else {
+    let Some(share) = share(&format!("`blur` of {what}"), node, variable, findings) else {
         return;
     };
     for i in 0..variable.terms.len() {
@@ -252,8 +252,26 @@ pub(super) fn misplaced(what: &str, fields: &Fields<'_>, findings: &mut Vec<Diag
 }
 
 /// Reads a distance as a share of the range.
-fn share(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<f64> {
-    number_in(what, node, BELOW_1, findings)
+fn share(
+    what: &str,
+    node: &Node,
+    variable: &Variable,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<f64> {
+    let before = findings.len();
+    let found = number_in(what, node, BELOW_1, findings);
+    let distance = node.as_number_text().and_then(|text| text.parse::<f64>().ok());
+    let width = variable.high - variable.low;
+    if let (Some(distance), Some(finding)) = (distance, findings.get_mut(before))
+        && distance > 0.0
+        && distance < width
+    {
+        finding.help = Some(format!(
+            "it is a share of the width of the range: for {distance} of {width} write `{}`",
+            rounded(distance / width)
+        ));
+    }
+    found
 }
 
 /// Reads one lag for both flanks, or one for each.
@@ -290,16 +308,15 @@ fn number_in(
     (range, valid): NumberRange,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<f64> {
-    let number = node.finite(what, findings)?;
+    let number = node.share(what, findings)?;
     if valid(number) {
         return Some(number);
     }
     let message = format!("{what} is {number}, but must be {range}");
-    findings.push(Diagnostic::error(
-        "wrong-parameter",
-        node.span.clone(),
-        message,
-    ));
+    let mut finding = Diagnostic::error("wrong-parameter", node.span.clone(), message);
+    let share = number / 100.0;
+    finding.help = (number > 1.0 && valid(share)).then(|| format!("for {number} % write `{share}`"));
+    findings.push(finding);
     None
 }
 

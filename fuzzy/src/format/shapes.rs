@@ -8,7 +8,8 @@ use alloc::{
 
 use super::footprints;
 use crate::{
-    diagnostic::{Diagnostic, all_of, suggest},
+    diagnostic::{Diagnostic, all_of, nearest, suggest},
+    foreign,
     model::{Form, Formula, MembershipFunction, Parts, document::TermSpans},
     rule::Name,
     tree::{Entry, Fields, Node, Value},
@@ -49,12 +50,19 @@ pub(super) fn read(
                 "write the membership function as the key: `{{{}: ...}}`",
                 name.text
             )),
-            _ => suggest(shape.key, known),
+            _ => upper_and_lower(fields).or_else(|| suggest(shape.key, known)),
         };
         findings.push(finding);
         return None;
     }
     if let Some(second) = shapes.next() {
+        let beside = footprints::KEYS.into_iter().chain(["height"]);
+        if let Some(key) = foreign::meant(second.key, beside.clone()).first().copied().or_else(|| nearest(second.key, beside)) {
+            let message = format!("{term} has no key `{}`", second.key);
+            let finding = Diagnostic::error("unknown-key", second.key_span.clone(), message);
+            findings.push(finding.help(format!("did you mean `{key}`?")));
+            return None;
+        }
         // In braces, a comma ends the formula: `{function: max(x, 3)}` has a second key `3)`.
         if shape.key == "function"
             && second.value.is_null()
@@ -88,6 +96,17 @@ pub(super) fn read(
             by_form(form, shape.value, spans, findings)
         }
     }
+}
+
+/// Returns a suggestion for the words of other programs for the two membership functions of a type-2 term.
+fn upper_and_lower(fields: &Fields<'_>) -> Option<String> {
+    let entries = fields.entries().iter();
+    let pairs = entries.filter_map(|entry| {
+        let here = foreign::meant(entry.key, ["upper", "lower"]);
+        Some(format!("`{}` in place of `{}`", here.first()?, entry.key))
+    });
+    let pairs: Vec<String> = pairs.collect();
+    (!pairs.is_empty()).then(|| format!("write {}", pairs.join(", ")))
 }
 
 fn by_form(
@@ -176,6 +195,19 @@ fn other_parameters(form: &Form, fields: &Fields<'_>) -> Diagnostic {
         .iter()
         .filter_map(|entry| entry.value.as_number_text());
     let numbers: Vec<&str> = numbers.collect();
+    // The entry of each parameter, if every key has another meaning.
+    let meant: Vec<&str> = names
+        .iter()
+        .filter_map(|name| {
+            let is_meant = |entry: &&Entry<'_>| foreign::parameter(form.name, entry.key, &names) == Some(name);
+            let mut entries = fields.entries().iter().filter(is_meant);
+            entries.next().filter(|_| entries.next().is_none())?.value.as_number_text()
+        })
+        .collect();
+    let numbers = match meant.len() == names.len() {
+        true => meant,
+        false => numbers,
+    };
     let help = match numbers.len() == names.len() {
         true if form.as_list() => format!("write `{}: [{}]`", form.name, numbers.join(", ")),
         true => {

@@ -385,6 +385,20 @@ fn percent(text: &str, start: usize) -> bool {
     number.is_some_and(|number| number.ends_with(|c: char| c.is_ascii_digit()))
 }
 
+/// Returns the first number with a comma between its digits, with a point in place of the comma.
+fn decimal_comma(text: &str) -> Option<String> {
+    let digits = |part: &str| part.bytes().take_while(u8::is_ascii_digit).count();
+    // Other commas are followed by a blank.
+    let mut commas = text.match_indices(',').filter(|_| text.contains(", "));
+    commas.find_map(|(at, _)| {
+        let (before, after) = (text.get(..at)?, text.get(at + 1..)?);
+        let start = before.trim_end_matches(|c: char| c.is_ascii_digit()).len();
+        let (whole, part) = (before.get(start..)?, after.get(..digits(after))?);
+        let is_number = !whole.is_empty() && !part.is_empty();
+        is_number.then(|| format!("{whole}.{part}"))
+    })
+}
+
 impl Mistake<'_> {
     /// Returns the diagnostic of the syntax error.
     fn explain(self, text: &str) -> Diagnostic {
@@ -484,7 +498,11 @@ impl Mistake<'_> {
             Wrong::Count(name, takes, has) => {
                 let numbers = if takes == 1 { "number" } else { "numbers" };
                 let message = format!("`{name}` takes {takes} {numbers}, not {has}");
+                let comma = decimal_comma(rest).filter(|_| has > takes);
                 let help = match takes {
+                    _ if comma.is_some() => {
+                        format!("write a decimal point: `{}`", comma.unwrap_or_default())
+                    }
                     1 => format!("write `{name}(x)`"),
                     _ if has > 2 => format!("nest it: `{name}({name}(x, y), z)`"),
                     _ => format!("write `{name}(x, y)`"),

@@ -8,7 +8,10 @@ use super::{
     Hedge, Rule, is_plain_name,
     parse::{DEEPEST_NESTING, is_name_letter, keyword, quoted, word},
 };
-use crate::diagnostic::{Diagnostic, either, is_curly_quote, meant, nearest, suggest};
+use crate::{
+    diagnostic::{Diagnostic, either, is_curly_quote, meant, nearest, suggest},
+    tree::share_of_percentage,
+};
 
 /// A syntax error, with the remaining text at the position where it was detected.
 pub(super) struct Mistake<'a> {
@@ -231,6 +234,20 @@ fn is_missing(
     owner: Owner<'_>,
 ) -> Option<String> {
     let found = found_here(rest);
+    // For example `IF "temperature IS cold" THEN`, and `IF temperature.cold THEN`.
+    if name.starts_with(['"', '\'']) && name.to_lowercase().contains(" is ") {
+        return Some("remove the quotes: they make one name of the condition".into());
+    }
+    if let Some((of, term)) = name.split_once('.')
+        && owner(kind, term).as_deref() == Some(of)
+    {
+        return Some(format!("write `{of} IS {term}`"));
+    }
+    // For example `IF (temperature, cold) THEN`.
+    let next = found_here(rest.get(found.len()..).unwrap_or("").trim_start());
+    if found == "," && owner(kind, next).as_deref() == Some(name) {
+        return Some(format!("write `{name} IS {next}`"));
+    }
     if found.is_empty()
         || JOINTS
             .iter()
@@ -449,6 +466,9 @@ fn name_is_missing(what: &str, found: &str) -> Option<String> {
     if !input && is("IS") {
         return Some("remove the second `IS`".into());
     }
+    if what == "the name of an output" && is(":") {
+        return Some("remove the colon".into());
+    }
     if what == "the name of an output" && is("THEN") {
         return Some("remove the second `THEN`".into());
     }
@@ -466,17 +486,15 @@ fn name_is_missing(what: &str, found: &str) -> Option<String> {
 fn weight_advice(rest: &str) -> String {
     let mut words = rest.split_whitespace();
     let first = words.next().unwrap_or("");
-    let percent = first
-        .strip_suffix('%')
-        .and_then(|number| number.parse::<f64>().ok());
+    let share = share_of_percentage(first);
     let named = words
         .next()
         .filter(|_| first.eq_ignore_ascii_case("weight"));
     match (
-        percent,
+        share,
         named.filter(|number| number.parse::<f64>().is_ok()),
     ) {
-        (Some(percent), _) => format!("write `WITH {}`", percent / 100.0),
+        (Some(share), _) => format!("write `WITH {share}`"),
         (_, Some(number)) => format!("write `WITH {number}`"),
         _ => "a weight is a number from 0 to 1: `WITH 0.8`".into(),
     }
@@ -602,14 +620,19 @@ fn behind_conclusion(before: &str, rest: &str, weighted: bool) -> Option<String>
             .unwrap_or("0.5");
         return Some(format!("write a weight after `WITH`: `WITH {number}`"));
     }
-    if let Some(number) = rest.strip_prefix(',')
-        && number.starts_with(|c: char| c.is_ascii_digit())
-    {
-        return Some("write a decimal point: `WITH 0.8`".into());
+    let number = rest.trim_start_matches([',', '(', '[', ' ']);
+    let end = number.find(|c: char| !c.is_ascii_digit() && c != '.');
+    let number = number.get(..end.unwrap_or(number.len())).unwrap_or("");
+    let whole = before.split_whitespace().next_back().unwrap_or("");
+    if rest.starts_with(',') && !number.is_empty() && whole.parse::<u64>().is_ok() {
+        return Some(format!("write a decimal point: `WITH {whole}.{number}`"));
     }
     match found {
         "," => Some("join conclusions by `AND`".into()),
         ";" => Some("remove it; each rule is an item of the list `rules`".into()),
+        "(" | "[" if number.parse::<f64>().is_ok() => {
+            Some(format!("write a weight after `WITH`: `WITH {number}`"))
+        }
         "(" | "%" | "[" => Some("write a weight after `WITH`: `WITH 0.8`".into()),
         _ if weighted => Some("a weight is the end of its rule; remove everything after it".into()),
         _ if is_plain_name(found) => {

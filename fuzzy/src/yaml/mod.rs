@@ -316,7 +316,7 @@ fn syntax(text: &str, error: &ScanError) -> Box<Diagnostic> {
             "the text ends at the quote before this point: write `\\\"` for a quote in double quotes"
         }
         ErrorKind::ExpectedBlockSequenceEntry => {
-            "all entries of a list begin with `-`; inputs and outputs have names, and no `-`"
+            "all entries of a list begin with `-`; inputs, outputs and blocks have names, and no `-`"
         }
         ErrorKind::UnknownAnchor => "define it with `&name` before it is used",
         ErrorKind::UnexpectedCharacter { .. } => {

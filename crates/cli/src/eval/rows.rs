@@ -1,13 +1,17 @@
 //! Rows of a table, evaluated and written as CSV.
 
 use csv::ByteRecord;
-use fuzzy::engine::{Enclosure, IntervalOutcome, Outcome, Sequence, State};
+use fuzzy::{
+    Engine,
+    engine::{Enclosure, IntervalOutcome, Outcome, Sequence, State},
+    model::MembershipFunction,
+};
 
 use super::{Plan, With, tally::Tally, uncertain};
 use crate::{
     failure::Failure,
     output::{cell, number_or_cell},
-    table::{Cell, Reader},
+    table::{Cell, Extent, Reader},
 };
 
 /// Maximum number of rows in a block.
@@ -87,6 +91,8 @@ impl<'p> Evaluator<'p> {
             self.problems.push(problem);
         }
         let columns: Vec<&[f64]> = self.columns.iter().map(Vec::as_slice).collect();
+        let extents = columns.iter().map(|values| Extent::of(values.iter().copied()));
+        let extents = extents.collect();
         let outputs = plan.engine.output_names().len();
         self.outcomes
             .resize(block.rows * outputs, Outcome::default());
@@ -99,13 +105,15 @@ impl<'p> Evaluator<'p> {
 
         let mut tally = Tally::new(plan);
         tally.rows = block.rows as u64;
+        tally.extents = extents;
         block.written.clear();
         let mut writer = plan.writer(&mut block.written);
         let outcomes = self.outcomes.chunks_exact(outputs);
         for (row, (record, outcomes)) in records.iter().zip(outcomes).enumerate() {
             let line = record.position().map_or(0, csv::Position::line);
             let problem = self.problems.get(row).and_then(Option::as_deref);
-            tally.has_misfit |= plan.header.misfit(record.len()).is_some();
+            let is_comment = record.get(0).is_some_and(|first| first.starts_with(b"#"));
+            tally.has_misfit |= record.len() != plan.header.names.len() && !is_comment;
             match problem {
                 Some(problem) => {
                     tally.add_bad(line, problem);
@@ -125,9 +133,15 @@ impl<'p> Evaluator<'p> {
     /// Reads the inputs of a row, and returns the problem with it, if any. Unknown inputs, and all inputs of a bad row, are NaN.
     fn read(&mut self, record: &ByteRecord) -> Option<String> {
         let header = &self.plan.header;
-        let mut problems: Vec<String> = header.misfit(record.len()).into_iter().collect();
+        let misfit = header.misfit(record.len(), record.get(0));
+        let is_whole = misfit.is_none();
+        let mut problems: Vec<String> = misfit.into_iter().collect();
         for (values, column) in self.columns.iter_mut().zip(&self.plan.inputs) {
-            let text = record.get(*column).unwrap_or_default();
+            // The cells of a row with another number of cells may be in other columns.
+            let text = match is_whole {
+                true => record.get(*column).unwrap_or_default(),
+                false => b"",
+            };
             let value = match Cell::of(text) {
                 Cell::Number(number) => number,
                 Cell::Unknown => f64::NAN,
@@ -325,7 +339,10 @@ impl<'p> Evaluator<'p> {
         let unknown = unknown.map(|(name, _)| format!("`{name}` is unknown"));
         let silent = engine.output_names().zip(outcomes);
         let silent = silent.filter(|(_, outcome)| outcome.state == State::NoRuleFired);
-        let silent = silent.map(|(name, _)| match outcomes.len() {
+        let silent = silent.map(|(name, outcome)| match outcomes.len() {
+            _ if outcome.coverage > 0.0 && has_formula(engine, name) => {
+                format!("a formula of `{name}` has no finite value")
+            }
             1 => "no rule fires".to_owned(),
             _ => format!("no rule fires for `{name}`"),
         });
@@ -343,6 +360,16 @@ impl<'p> Evaluator<'p> {
             .collect::<Vec<_>>()
             .join("; ")
     }
+}
+
+/// Returns whether a term of an output is a formula.
+fn has_formula(engine: &Engine, output: &str) -> bool {
+    let mut outputs = engine.model().outputs.iter();
+    let output = outputs.find(|known| known.variable.name == output);
+    output.is_some_and(|output| {
+        let mut terms = output.variable.terms.iter();
+        terms.any(|term| matches!(term.membership_function, MembershipFunction::Function { .. }))
+    })
 }
 
 /// Returns whether a cell contains only visible characters and cannot be a spreadsheet formula.

@@ -176,7 +176,14 @@ fn hold(text: &str) -> Result<(String, f64), String> {
     let (name, value) = text.split_once('=').ok_or("write `INPUT=VALUE`")?;
     match value.trim().parse::<f64>() {
         Ok(value) if value.is_finite() => Ok((name.trim().to_owned(), value)),
-        _ => Err(format!("`{value}` is not a finite number")),
+        _ if value.contains('=') => Err(format!(
+            "repeat the option: `--hold {}`",
+            text.replace(',', " --hold ")
+        )),
+        _ => Err(match fuzzy::tree::number_advice(value) {
+            Some(advice) => format!("`{value}` is not a number: {advice}"),
+            None => format!("`{value}` is not a finite number"),
+        }),
     }
 }
 
@@ -209,7 +216,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let output = files.optional(arguments.output.as_ref())?;
     let evaluated = evaluate(arguments)?;
     if let Some(table) = &arguments.check {
-        return check::against(table, &evaluated);
+        let write = || {
+            let (model, table) = (arguments.model.display(), table.display());
+            format!("`flagred map {model} --csv --output {table}` writes it")
+        };
+        return check::against(table, &evaluated)
+            .map_err(|failure| failure.instead_of(crate::path::CHECK, write));
     }
     if let Some(name) = arguments.output.as_ref().and_then(|path| path.to_str())
         && evaluated.engine.output_names().any(|output| output == name)

@@ -293,8 +293,7 @@ fn rule_block(paper: &mut Paper, block: &Rules<'_>, number: &mut usize) {
                 }
             }
             None => {
-                let message = format!("rule {index} has a NOT before brackets");
-                paper.loss("not", message, "write NOT before the terms");
+                paper.leave_out(*index, "has a NOT before brackets", "write NOT before the terms");
             }
         }
     }

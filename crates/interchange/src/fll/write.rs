@@ -201,8 +201,8 @@ fn rule_block(paper: &mut Paper, block: &Rules<'_>, model: &Model) {
                 .iter()
                 .for_each(|rule| paper.line(format!("  rule: {rule}"))),
             None => {
-                let message = format!("rule {number} has a NOT before brackets");
-                paper.loss("not", message, "fuzzylite has `not` before a term only");
+                let help = "fuzzylite has `not` before a term only";
+                paper.leave_out(*number, "has a NOT before brackets", help);
             }
         }
     }

@@ -365,9 +365,8 @@ fn rule_base(paper: &mut Paper, block: &Rules<'_>, outputs: Kind) -> Element {
         match self::rule(rule, *number, operators, outputs) {
             Ok(element) => base.push(element.with("andMethod", and).with("orMethod", or)),
             Err(what) => {
-                let message = format!("rule {number} {what}");
                 let help = "a rule of FML joins its clauses either all by AND or all by OR";
-                paper.loss("rule", message, help);
+                paper.leave_out(*number, what, help);
             }
         }
     }
