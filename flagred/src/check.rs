@@ -410,6 +410,9 @@ fn signal(
         let unit = known.iter().find(|(known, _)| *known == name);
         unit.map(|(_, unit)| *unit)
     };
+    if let Some(found) = number_of_statistic(input, unit_of, at) {
+        return Some(found);
+    }
     if let Signal::Difference { a, b } = &input.source.signal {
         let message = match (unit_of(a), unit_of(b)) {
             (Some(of_a), Some(of_b)) if normal(of_a) != normal(of_b) => {
@@ -538,8 +541,8 @@ fn normal(unit: &str) -> String {
     unit.to_lowercase()
 }
 
-/// The minimum and maximum of the values of a source; `None` if it is unbounded.
-fn range(source: &Source) -> Option<(f64, f64)> {
+/// The minimum and maximum of a signal, after the motors of a sample are combined.
+fn range_of_signal(source: &Source) -> (f64, f64) {
     let (low, high) = match &source.signal {
         Signal::MotorMargin => (0.0, 0.5),
         Signal::MotorCommand | Signal::MotorMarginLowSide | Signal::MotorMarginHighSide => {
@@ -548,11 +551,76 @@ fn range(source: &Source) -> Option<(f64, f64)> {
         Signal::CommandNoise => (0.0, 1.0),
         _ => (f64::NEG_INFINITY, f64::INFINITY),
     };
-    let width = high - low;
-    let (low, high) = match source.motors {
-        Motors::Std => (0.0, width / 2.0),
+    match source.motors {
+        Motors::Std => (0.0, (high - low) / 2.0),
         Motors::Pooled | Motors::Mean | Motors::Min | Motors::Max | Motors::One(_) => (low, high),
+    }
+}
+
+/// Finds a number of a statistic in another unit: a threshold that the signal is always or never beyond, and a percentile
+/// as a share.
+fn number_of_statistic<'k>(
+    input: &ProfileInput,
+    unit_of: impl Fn(&str) -> Option<&'k str>,
+    at: &Places,
+) -> Option<Diagnostic> {
+    let source = &input.source;
+    let finding = |key: &str, message: String, meant: Option<f64>| {
+        let place = at.of(&["inputs", &input.name, key]);
+        let finding = Diagnostic::warning("unit", place, message);
+        Some(match meant {
+            Some(meant) => finding.help(format!("did you mean `{key}: {}`?", shown(meant))),
+            None => finding.help("write a threshold between these"),
+        })
     };
+    let (key, threshold) = match source.statistic {
+        Statistic::ShareBelow(threshold) => ("share_below", threshold),
+        Statistic::ShareAbove(threshold) => ("share_above", threshold),
+        Statistic::Percentile(number) if number > 0.0 && number < 1.0 => {
+            let message = format!("`percentile` is in percent, and {number} is a share");
+            return finding("percentile", message, Some(100.0 * number));
+        }
+        _ => return None,
+    };
+    let name = match &source.signal {
+        Signal::Named(name) => name,
+        signal => Signal::name_of(signal)?,
+    };
+    let is_percent = unit_of(name) == Some("%");
+    let (low, high) = match is_percent {
+        true => (0.0, 100.0),
+        false => range_of_signal(source),
+    };
+    let is_above = key == "share_above";
+    let never = match is_above {
+        true => threshold >= high,
+        false => threshold <= low,
+    };
+    let always = match is_above {
+        true => threshold < low,
+        false => threshold > high,
+    };
+    let side = key.trim_start_matches("share_");
+    let inside = |meant: &f64| *meant > low && *meant < high;
+    let what = format!("`{name}` is from {} to {}", shown(low), shown(high));
+    let message = match (never, always) {
+        (true, _) => format!("{what}, so it is never {side} {threshold}"),
+        (_, true) => format!("{what}, so it is always {side} {threshold}"),
+        _ if is_percent && threshold < 1.0 => {
+            format!("`{name}` is in percent, and {threshold} is a share")
+        }
+        _ => return None,
+    };
+    let meant = match is_percent {
+        true => 100.0 * threshold,
+        false => threshold / 100.0,
+    };
+    finding(key, message, Some(meant).filter(inside))
+}
+
+/// The minimum and maximum of the values of a source; `None` if it is unbounded.
+fn range(source: &Source) -> Option<(f64, f64)> {
+    let (low, high) = range_of_signal(source);
     let (low, high) = match source.statistic {
         Statistic::ShareBelow(_) | Statistic::ShareAbove(_) => (0.0, 1.0),
         Statistic::Std | Statistic::StdLessNoise => (0.0, (high - low) / 2.0),

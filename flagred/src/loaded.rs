@@ -292,7 +292,8 @@ pub fn rules<E>(
     let names = names.chain(beside.iter().map(String::as_str));
     let is_named = |file: &&String| {
         let text = folder.and_then(|folder| read(&folder.join(file)).ok());
-        let name = text.and_then(|text| Some(Source::new(text).document().ok()?.model.name.clone()));
+        let name =
+            text.and_then(|text| Some(Source::new(text).document().ok()?.model.name.clone()));
         Path::new(file).file_stem() == Some(OsStr::new(&profile.rules))
             || name.as_ref() == Some(&profile.rules)
     };

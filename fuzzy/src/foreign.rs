@@ -33,6 +33,9 @@ pub(crate) const WORDS: &[(&str, &[&str])] = &[
     ("center", &["mean", "inflection"]),
     ("mean", &["center"]),
     ("sigma", &["sd"]),
+    ("sig", &["sd"]),
+    ("min", &["range", "minimum"]),
+    ("max", &["range", "maximum"]),
     ("std", &["sd"]),
     ("stddev", &["sd", "std"]),
     ("standarddeviation", &["sd", "std"]),
@@ -188,7 +191,9 @@ pub(crate) fn parameter<'a>(function: &str, key: &str, names: &[&'a str]) -> Opt
     let letters = LETTERS.iter().find(|(name, _)| *name == function);
     let mut letters = letters.map_or(&[][..], |(_, letters)| letters).iter();
     let named = |name: &str| names.iter().copied().find(|known| *known == name);
-    let of_letter = letters.find(|(letter, _)| *letter == key).map(|(_, name)| *name);
+    let of_letter = letters
+        .find(|(letter, _)| *letter == key)
+        .map(|(_, name)| *name);
     named(key)
         .or_else(|| named(of_letter?))
         .or_else(|| meant(key, names.iter().copied()).first().copied())

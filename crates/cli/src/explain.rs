@@ -31,7 +31,7 @@ pub(crate) struct Arguments {
     /// Explain each row of this table: print it with the value, the dominant rule and the shares of the rules for each output
     #[arg(long, alias = "csv", value_name = "POINTS.csv", conflicts_with_all = ["inputs", "json", "svg"])]
     rows: Option<PathBuf>,
-    /// The file to write [default: standard output]
+    /// The file to write, replaced if it exists [default: standard output]
     #[arg(short, long, value_name = "FILE", value_parser = output::text_path)]
     output: Option<PathBuf>,
     /// Print a JSON document instead of text

@@ -113,9 +113,7 @@ impl Claims {
         let mut options = [("--rising", &self.rising), ("--falling", &self.falling)].into_iter();
         options.find_map(|(option, inputs)| {
             let joined = inputs.iter().find(|input| input.contains(','))?;
-            let each = joined.split(',').map(|one| format!("{option} {}", one.trim()));
-            let each: Vec<String> = each.collect();
-            Some(format!("repeat the option: `{}`", each.join(" ")))
+            Some(repeated(option, joined))
         })
     }
 
@@ -194,6 +192,17 @@ impl Claims {
     }
 }
 
+/// Advice for several values in one option that may be repeated.
+pub(crate) fn repeated(option: &str, joined: &str) -> String {
+    let each = joined
+        .split(',')
+        .map(|one| format!("{option} {}", one.trim()));
+    format!(
+        "repeat the option: `{}`",
+        each.collect::<Vec<_>>().join(" ")
+    )
+}
+
 /// Returns the command-line word for a value.
 pub(crate) fn word(value: &impl ValueEnum) -> String {
     let word = value.to_possible_value();
@@ -222,7 +231,10 @@ pub(crate) fn read(arguments: &FromRows, model: &Model) -> Result<Data, Failure>
     let tables = tables(&arguments.data, format);
     let mut data = columns(tables, format, &names, &labels, optional)?;
     for (column, variable) in variables.iter().enumerate() {
-        let values = data.rows.iter().filter_map(|(row, _)| row.values.get(column));
+        let values = data
+            .rows
+            .iter()
+            .filter_map(|(row, _)| row.values.get(column));
         if let Some(warning) = Extent::of(values.copied()).warning(variable) {
             output::say(&warning);
         }
@@ -354,7 +366,11 @@ pub(crate) fn columns(
         }
         if data.rows.len() == kept {
             let is_word = columns.last().is_some_and(|output| {
-                (0..table.len()).any(|row| labels.iter().any(|(label, _)| label == table.text(row, *output)))
+                (0..table.len()).any(|row| {
+                    labels
+                        .iter()
+                        .any(|(label, _)| label == table.text(row, *output))
+                })
             });
             let columns = columns.iter().take(columns.len() - usize::from(is_word));
             for column in columns {
@@ -362,7 +378,9 @@ pub(crate) fn columns(
             }
             if let Some(column) = weight {
                 let name = table.header.name(column);
-                let help = format!("a weight is a number; to keep rows with the same `{name}` in one fold, write `--group-by {name}`");
+                let help = format!(
+                    "a weight is a number; to keep rows with the same `{name}` in one fold, write `--group-by {name}`"
+                );
                 table.has_numbers(column, &help)?;
             }
         }
@@ -436,7 +454,12 @@ pub(crate) fn refuse(refused: &[String], rows: usize, purpose: &str) -> Failure 
     for (_, same) in kinds.iter().take(KINDS) {
         details.extend(same.iter().take(SHOWN).map(|why| (*why).clone()));
         let more = same.len().saturating_sub(SHOWN);
-        details.extend((more > 0).then(|| format!("and {more} more like {}", if same.len() > 1 { "these" } else { "this" })));
+        details.extend((more > 0).then(|| {
+            format!(
+                "and {more} more like {}",
+                if same.len() > 1 { "these" } else { "this" }
+            )
+        }));
     }
     let others = kinds.iter().skip(KINDS).map(|(_, same)| same.len());
     let others: usize = others.sum();

@@ -16,8 +16,8 @@ use std::{
 };
 
 pub(crate) use cell::Cell;
-use fuzzy::diagnostic::quoted;
 use foreign::not_a_table;
+use fuzzy::diagnostic::quoted;
 pub(crate) use header::Header;
 pub(crate) use share::Extent;
 
@@ -100,7 +100,7 @@ pub(crate) struct Format {
     #[arg(long, value_name = "CHARACTER", default_value = ",", value_parser = delimiter)]
     pub(crate) delimiter: u8,
 
-    /// Skip rows that cannot be read
+    /// Skip rows that cannot be used
     #[arg(long)]
     pub(crate) skip_bad_rows: bool,
 }
@@ -139,7 +139,7 @@ pub(crate) fn rule_set_first(
 ) -> Result<(), Failure> {
     let Some(rules) = others
         .iter()
-        .find(|other| !is_table(other))
+        .find(|other| !is_table(other) && other.as_path() != Path::new("-"))
         .filter(|_| is_table(model))
     else {
         return Ok(());

@@ -193,9 +193,11 @@ pub(crate) fn is_parameters(start: &[u8]) -> bool {
     let mut lines = lines.filter(|line| !line.is_empty() && !line.starts_with('#'));
     let is_entry = |line: &str| {
         let cells = line.split([',', '\t', ' ']).filter(|cell| !cell.is_empty());
-        let (numbers, names): (Vec<&str>, Vec<&str>) = cells.partition(|cell| cell.parse::<f64>().is_ok());
+        let (numbers, names): (Vec<&str>, Vec<&str>) =
+            cells.partition(|cell| cell.parse::<f64>().is_ok());
         let is_name = |c: char| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_';
-        matches!(names[..], [name] if name.len() > 2 && name.chars().all(is_name)) && !numbers.is_empty()
+        matches!(names[..], [name] if name.len() > 2 && name.chars().all(is_name))
+            && !numbers.is_empty()
     };
     lines.next().is_some_and(is_entry) && lines.take(2).all(is_entry)
 }
@@ -215,7 +217,13 @@ pub(crate) fn of_rest(start: &[u8]) -> Kind {
     }
     let text = String::from_utf8_lossy(start);
     let starts = |key: &str| text.lines().any(|line| line.starts_with(key));
-    let of_others = ["[System]", "Engine:", "FUNCTION_BLOCK", "<fuzzySystem", "<FuzzyController"];
+    let of_others = [
+        "[System]",
+        "Engine:",
+        "FUNCTION_BLOCK",
+        "<fuzzySystem",
+        "<FuzzyController",
+    ];
     let header = text.lines().find(|line| !line.starts_with('#'));
     let separates =
         |sign: char| header.is_some_and(|header| header.contains(sign) && !header.contains(','));

@@ -237,9 +237,14 @@ pub fn write(model: &Model, format: Format, losses: Losses) -> Result<Written, F
 /// Returns an error for an output whose rules were all left out.
 fn without_rules(model: &Model, written: &Model) -> Option<Diagnostic> {
     let concluded = |model: &Model, output: usize| {
-        let name = model.outputs.get(output).map(|output| &output.variable.name);
+        let name = model
+            .outputs
+            .get(output)
+            .map(|output| &output.variable.name);
         let consequents = model.rules.iter().flat_map(|rule| &rule.rule.consequents);
-        consequents.map(|one| &one.output.text).any(|it| Some(it) == name)
+        consequents
+            .map(|one| &one.output.text)
+            .any(|it| Some(it) == name)
     };
     let is_lost = |output: &usize| concluded(model, *output) && !concluded(written, *output);
     let lost = (0..model.outputs.len()).find(is_lost)?;

@@ -209,7 +209,9 @@ fn without_value(model: &Model, output: &str, term: &Term, formula: &Formula) ->
         };
         let tried: Vec<f64> = tried.take(count).collect();
         let longer = points.iter().flat_map(|point| {
-            tried.iter().map(move |value| point.iter().copied().chain([*value]).collect())
+            tried
+                .iter()
+                .map(move |value| point.iter().copied().chain([*value]).collect())
         });
         points = longer.take(MOST_POINTS).collect();
     }
@@ -224,11 +226,20 @@ fn without_value(model: &Model, output: &str, term: &Term, formula: &Formula) ->
         let value = |name: &str| value_of(point, name).unwrap_or(f64::NAN);
         formula.places().all(is_known) && !formula.evaluate(value).is_finite()
     });
-    let index = model.outputs.iter().position(|it| it.variable.name == output)?;
+    let index = model
+        .outputs
+        .iter()
+        .position(|it| it.variable.name == output)?;
     // With a number in place of the formula, the output has a value if the rule fires.
     let mut other = model.clone();
-    let terms = other.outputs.get_mut(index).map(|output| &mut output.variable.terms);
-    let one = terms.into_iter().flatten().find(|one| one.name == term.name)?;
+    let terms = other
+        .outputs
+        .get_mut(index)
+        .map(|output| &mut output.variable.terms);
+    let one = terms
+        .into_iter()
+        .flatten()
+        .find(|one| one.name == term.name)?;
     one.membership_function = MembershipFunction::Constant { value: 1.0 };
     let engines = (!points.is_empty()).then(|| (Engine::new(model), Engine::new(&other)));
     let Some((Ok(engine), Ok(other))) = engines else {
@@ -236,10 +247,18 @@ fn without_value(model: &Model, output: &str, term: &Term, formula: &Formula) ->
     };
     let has_value = |engine: &Engine, point: &[f64]| {
         let outcomes = engine.evaluate(point).ok();
-        outcomes.and_then(|outcomes| outcomes.get(index)?.value()).is_some()
+        outcomes
+            .and_then(|outcomes| outcomes.get(index)?.value())
+            .is_some()
     };
-    let point = points.iter().find(|point| !has_value(&engine, point) && has_value(&other, point))?;
-    let values = model.inputs.iter().zip(point).filter(|(input, _)| is_read(input));
+    let point = points
+        .iter()
+        .find(|point| !has_value(&engine, point) && has_value(&other, point))?;
+    let values = model
+        .inputs
+        .iter()
+        .zip(point)
+        .filter(|(input, _)| is_read(input));
     let values: Vec<String> = values
         .map(|(input, value)| format!("{} = {}", input.name, shown(*value)))
         .collect();

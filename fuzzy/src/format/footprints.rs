@@ -48,7 +48,12 @@ pub(super) fn extended(
         return Some(term);
     }
     if let Some(entry) = blur {
-        let share = share(&format!("`blur` of {what}"), entry.value, variable, findings)?;
+        let share = share(
+            &format!("`blur` of {what}"),
+            entry.value,
+            variable,
+            findings,
+        )?;
         return blurred(what, &term, share, variable, entry.value, spans, findings);
     }
     let scale = match scale {
@@ -260,7 +265,9 @@ fn share(
 ) -> Option<f64> {
     let before = findings.len();
     let found = number_in(what, node, BELOW_1, findings);
-    let distance = node.as_number_text().and_then(|text| text.parse::<f64>().ok());
+    let distance = node
+        .as_number_text()
+        .and_then(|text| text.parse::<f64>().ok());
     let width = variable.high - variable.low;
     if let (Some(distance), Some(finding)) = (distance, findings.get_mut(before))
         && distance > 0.0
@@ -315,7 +322,10 @@ fn number_in(
     let message = format!("{what} is {number}, but must be {range}");
     let mut finding = Diagnostic::error("wrong-parameter", node.span.clone(), message);
     let share = number / 100.0;
-    finding.help = (number > 1.0 && valid(share)).then(|| format!("for {number} % write `{share}`"));
+    finding.help = Some(match number > 1.0 && valid(share) {
+        true => format!("for {number} % write `{share}`"),
+        false => "write for example `0.1`".into(),
+    });
     findings.push(finding);
     None
 }
@@ -448,7 +458,7 @@ mod tests {
         refused(
             "terms: {warm: {triangle: [4, 8, 16], lower_scale: 1.5}}",
             "`lower_scale` of term `warm` of input `x` is 1.5, but must be greater than 0, at most 1",
-            "",
+            "for 1.5 % write `0.015`",
         );
         refused(
             "terms: {warm: {gaussian: {mean: [22, 18], sd: 3}}}",

@@ -57,7 +57,11 @@ pub(super) fn read(
     }
     if let Some(second) = shapes.next() {
         let beside = footprints::KEYS.into_iter().chain(["height"]);
-        if let Some(key) = foreign::meant(second.key, beside.clone()).first().copied().or_else(|| nearest(second.key, beside)) {
+        if let Some(key) = foreign::meant(second.key, beside.clone())
+            .first()
+            .copied()
+            .or_else(|| nearest(second.key, beside))
+        {
             let message = format!("{term} has no key `{}`", second.key);
             let finding = Diagnostic::error("unknown-key", second.key_span.clone(), message);
             findings.push(finding.help(format!("did you mean `{key}`?")));
@@ -190,35 +194,37 @@ fn other_parameters(form: &Form, fields: &Fields<'_>) -> Diagnostic {
         all_of(&others)
     );
     let span = unknown.first().map_or(0..0, |entry| entry.key_span.clone());
+    // The number of each parameter, if every key has another meaning.
+    let meant = names.iter().map(|name| {
+        let is_meant =
+            |entry: &&Entry<'_>| foreign::parameter(form.name, entry.key, &names) == Some(name);
+        let mut entries = fields.entries().iter().filter(is_meant);
+        entries
+            .next()
+            .filter(|_| entries.next().is_none())?
+            .value
+            .as_number_text()
+    });
+    let meant: Option<Vec<&str>> = meant.collect();
     let numbers = fields
         .entries()
         .iter()
-        .filter_map(|entry| entry.value.as_number_text());
-    let numbers: Vec<&str> = numbers.collect();
-    // The entry of each parameter, if every key has another meaning.
-    let meant: Vec<&str> = names
-        .iter()
-        .filter_map(|name| {
-            let is_meant = |entry: &&Entry<'_>| foreign::parameter(form.name, entry.key, &names) == Some(name);
-            let mut entries = fields.entries().iter().filter(is_meant);
-            entries.next().filter(|_| entries.next().is_none())?.value.as_number_text()
-        })
-        .collect();
-    let numbers = match meant.len() == names.len() {
-        true => meant,
-        false => numbers,
-    };
-    let help = match numbers.len() == names.len() {
-        true if form.as_list() => format!("write `{}: [{}]`", form.name, numbers.join(", ")),
-        true => {
-            let named = names
-                .iter()
-                .zip(numbers)
-                .map(|(name, number)| format!("{name}: {number}"));
-            let named: Vec<String> = named.collect();
+        .map(|entry| entry.value.as_number_text());
+    let numbers = numbers.collect::<Option<Vec<&str>>>();
+    // Without known keys, only the order of a list is certain.
+    let numbers = numbers.filter(|numbers| form.as_list() && numbers.len() == names.len());
+    let help = match meant.or(numbers) {
+        Some(numbers) if form.as_list() => {
+            format!("write `{}: [{}]`", form.name, numbers.join(", "))
+        }
+        Some(numbers) => {
+            let named = names.iter().zip(numbers);
+            let named: Vec<String> = named
+                .map(|(name, number)| format!("{name}: {number}"))
+                .collect();
             format!("write `{}: {{{}}}`", form.name, named.join(", "))
         }
-        false => spelling(form),
+        None => spelling(form),
     };
     Diagnostic::error("unknown-key", span, message).help(help)
 }
@@ -322,9 +328,17 @@ fn linear(
     spans: &mut TermSpans,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<MembershipFunction> {
-    let help = "write a factor for each input and a constant: `linear: {temperature: 2, constant: 5}`; a formula is a \
-                `function: 2 * temperature + 5`";
-    let entries = node.entries("the linear term", "key", help, findings)?;
+    let help = match node
+        .as_text()
+        .filter(|text| text.parse::<Formula>().is_ok())
+    {
+        Some(formula) => format!("a formula is a function: write `function: {formula}`"),
+        None => {
+            "write a factor for each input and a constant: `linear: {temperature: 2, constant: 5}`"
+                .into()
+        }
+    };
+    let entries = node.entries("the linear term", "key", &help, findings)?;
     let mut coefficients = Vec::new();
     let (mut constant, mut constant_span) = (0.0, 0..0);
     for entry in entries {

@@ -101,7 +101,9 @@ fn advice(term: &str, limit: &Node) -> Option<String> {
     };
     // For example `30..60`: the end of the term is its limit.
     let range = text.rsplit_once("..").or_else(|| text.rsplit_once('-'));
-    let end = range.filter(|(low, _)| low.trim().parse::<f64>().is_ok()).map(|(_, end)| end.trim());
+    let end = range
+        .filter(|(low, _)| low.trim().parse::<f64>().is_ok())
+        .map(|(_, end)| end.trim());
     if text.starts_with(['>', '≥']) {
         return Some(format!("the last term has no limit: write `{term}:`"));
     }
@@ -170,7 +172,8 @@ fn order(
                     "the limit {low} of `{}` of {what} is below the limit {high} of `{}`",
                     right.key, left.key
                 );
-                let help = "write the terms from left to right: each limit is above the one before it";
+                let help =
+                    "write the terms from left to right: each limit is above the one before it";
                 let span = right.value.span.clone();
                 let finding = Diagnostic::error("inverted-parameters", span, message);
                 findings.push(finding.help(help));
@@ -230,6 +233,7 @@ fn check(
             (None, None) => {
                 let message = format!("the terms `{other}` and `{name}` of {what} have no limit");
                 wrong(right.key_span.clone(), "wrong-parameter", message, HELP);
+                break;
             }
             (Some(below), Some(above)) if below == above => {
                 let message = format!(

@@ -39,7 +39,8 @@ pub(super) fn terms(
         let term = term(what, entry, variable, &mut here, findings);
         // For example `none: 0` beside `some: {constant: 5}`.
         let computed = ["constant", "linear", "function"];
-        let is_computed = |other: &Entry<'_>| computed.iter().any(|key| other.value.child(key).is_some());
+        let is_computed =
+            |other: &Entry<'_>| computed.iter().any(|key| other.value.child(key).is_some());
         if let Some(number) = entry.value.as_number_text()
             && entries.iter().any(is_computed)
             && let Some(finding) = findings.get_mut(before)

@@ -6,7 +6,8 @@ use core::ops::Range;
 use super::{
     Spans, TermSpans, VariableSpans, footprints,
     notation::{
-        bare_numbers, colons_without_space, likely_defuzzifier, meant_by, other_terms, peaks_in_list,
+        bare_numbers, colons_without_space, likely_defuzzifier, meant_by, other_terms,
+        peaks_in_list,
     },
     optional_text, steps,
     terms::{terms, unread},
@@ -79,18 +80,27 @@ fn entries<'n>(
     spans: &mut Spans,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<Vec<Entry<'n>>> {
-    let entries = node.entries(&format!("`{key}`"), "variable", &variables_help(key), findings)?;
+    let entries = node.entries(
+        &format!("`{key}`"),
+        "variable",
+        &variables_help(key),
+        findings,
+    )?;
     // A rule may name the variable that was meant in place of a repeated one.
     spans.names_unread |= entries.len() < node.children();
     let is_variable = |entry: &&Entry<'_>| matches!(entry.value.value, Value::Mapping(_));
     let has_range = |entry: &Entry<'_>| entry.value.child("range").is_some();
     let kind = key.trim_end_matches('s');
-    let nameless = entries.iter().find(|entry| entry.key == "range" && !is_variable(entry));
+    let nameless = entries
+        .iter()
+        .find(|entry| entry.key == "range" && !is_variable(entry));
     if let Some(range) = nameless
         && entries.iter().all(|entry| keys.contains(&entry.key))
     {
         let message = format!("`{key}` has the keys of an {kind}, but no name");
-        let help = format!("write a name above them, and indent them below it: `{key}: {{speed: {{range: [0, 10], ...}}}}`");
+        let help = format!(
+            "write a name above them, and indent them below it: `{key}: {{speed: {{range: [0, 10], ...}}}}`"
+        );
         findings.push(Diagnostic::error("missing-key", range.key_span.clone(), message).help(help));
         return None;
     }
@@ -117,7 +127,9 @@ fn one<'n>(
     let fields = entry.fields(&what, keys, &variable_help(entry.key), findings);
     let (variable, here) = variable(&what, entry, fields.as_ref(), findings);
     // A variable below another one, whose keys are duplicates if they are in the same column.
-    let repeats = |finding: &Diagnostic| finding.code == "duplicate-key" && finding.message.starts_with(&what);
+    let repeats = |finding: &Diagnostic| {
+        finding.code == "duplicate-key" && finding.message.starts_with(&what)
+    };
     let has_repeated = findings.iter().skip(before).any(repeats);
     let mut unknown = fields.iter().flat_map(Fields::unknown);
     let nested = unknown.find(|other| {
@@ -125,7 +137,10 @@ fn one<'n>(
     });
     if let Some(nested) = nested {
         findings.truncate(before);
-        let message = format!("{what} has no key `{}`, which looks like an {kind}", nested.key);
+        let message = format!(
+            "{what} has no key `{}`, which looks like an {kind}",
+            nested.key
+        );
         let finding = Diagnostic::error("unknown-key", nested.key_span.clone(), message);
         findings.push(finding.help(format!("indent `{}:` like `{}:`", nested.key, entry.key)));
         spans.names_unread = true;
@@ -370,7 +385,10 @@ fn range(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<(f64
     let help = "write the minimum and the maximum: `range: [0, 1]`";
     let Value::List(ends) = &node.value else {
         let finding = node.unexpected(&format!("two numbers for the range of {what}"));
-        findings.push(finding.help(help));
+        findings.push(match two_numbers(node) {
+            Some([low, high]) => finding.help(format!("write `range: [{low}, {high}]`")),
+            None => finding.help(help),
+        });
         return None;
     };
     let [low, high] = ends.as_slice() else {
@@ -382,6 +400,31 @@ fn range(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<(f64
     let end = format!("the range of {what}");
     let (low, high) = (low.finite(&end, findings), high.finite(&end, findings));
     Some((low?, high?))
+}
+
+/// Returns the numbers of a range in another notation: `0..40`, `0 - 40`, `{min: 0, max: 40}`.
+fn two_numbers(node: &Node) -> Option<[&str; 2]> {
+    let numbers: Vec<&str> = match &node.value {
+        Value::Mapping(pairs) => pairs
+            .iter()
+            .filter_map(|(_, value)| value.as_number_text())
+            .collect(),
+        Value::Scalar(scalar) => {
+            let separators = ["..", " - ", " to ", ",", ";", "-", " "];
+            let mut separators = separators.iter();
+            let (low, high) = separators.find_map(|sign| {
+                let (low, high) = scalar
+                    .text
+                    .trim_matches(['(', ')', '[', ']'])
+                    .split_once(sign)?;
+                let is_number = |text: &str| text.trim().parse::<f64>().is_ok();
+                (is_number(low) && is_number(high)).then_some((low.trim(), high.trim()))
+            })?;
+            Vec::from([low, high])
+        }
+        Value::List(_) => return None,
+    };
+    <[&str; 2]>::try_from(numbers).ok()
 }
 
 const PARTITION_HELP: &str =

@@ -388,9 +388,7 @@ fn percent(text: &str, start: usize) -> bool {
 /// Returns the first number with a comma between its digits, with a point in place of the comma.
 fn decimal_comma(text: &str) -> Option<String> {
     let digits = |part: &str| part.bytes().take_while(u8::is_ascii_digit).count();
-    // Other commas are followed by a blank.
-    let mut commas = text.match_indices(',').filter(|_| text.contains(", "));
-    commas.find_map(|(at, _)| {
+    text.match_indices(',').find_map(|(at, _)| {
         let (before, after) = (text.get(..at)?, text.get(at + 1..)?);
         let start = before.trim_end_matches(|c: char| c.is_ascii_digit()).len();
         let (whole, part) = (before.get(start..)?, after.get(..digits(after))?);
@@ -442,7 +440,12 @@ impl Mistake<'_> {
             }
             Wrong::Operator => {
                 let message = format!("expected an operator or the end, found {shown}");
-                let before = text.get(..start).unwrap_or("").trim_end();
+                let before = text.get(..start).unwrap_or("");
+                let whole = before.trim_end_matches(|c: char| c.is_ascii_digit()).len();
+                let end = rest.find(' ').unwrap_or(rest.len());
+                let comma = text.get(whole..start + end).and_then(decimal_comma);
+                let decimal = comma.map(|number| format!("write a decimal point: `{number}`"));
+                let before = before.trim_end();
                 let before = before.rsplit(|c: char| !c.is_alphanumeric()).next();
                 let is_function = |(operation, word, _): &&(Operation, &str, usize)| {
                     operation.binds().is_none() && Some(*word) == before
@@ -467,6 +470,7 @@ impl Mistake<'_> {
                     "<>" | "=/=" => "write `!=`",
                     "=<" => "write `<=`",
                     "=>" => "write `>=`",
+                    "," if decimal.is_some() => decimal.as_deref().unwrap_or(""),
                     "," => {
                         "a decimal point is written as `.`; a comma separates the operands of a function"
                     }
@@ -498,7 +502,9 @@ impl Mistake<'_> {
             Wrong::Count(name, takes, has) => {
                 let numbers = if takes == 1 { "number" } else { "numbers" };
                 let message = format!("`{name}` takes {takes} {numbers}, not {has}");
-                let comma = decimal_comma(rest).filter(|_| has > takes);
+                let comma = decimal_comma(rest);
+                // Other commas are followed by a blank.
+                let comma = comma.filter(|_| has > takes && rest.contains(", "));
                 let help = match takes {
                     _ if comma.is_some() => {
                         format!("write a decimal point: `{}`", comma.unwrap_or_default())

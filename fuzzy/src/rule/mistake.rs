@@ -150,14 +150,14 @@ impl Mistake<'_> {
             }
             Wrong::Number => syntax(format!("expected a weight after `WITH`, found {shown}"))
                 .help(weight_advice(rest)),
-            Wrong::Weight(weight) => Diagnostic::error(
-                "weight-outside-range",
-                span,
-                format!("the weight `{weight}` is outside [0, 1]"),
-            )
-            .help(
-                "a weight multiplies the firing strength of its rule; write a number from 0 to 1",
-            ),
+            Wrong::Weight(weight) => {
+                let message = format!("the weight `{weight}` is outside [0, 1]");
+                let help = match weight > 1.0 && weight <= 100.0 {
+                    true => format!("for {weight} % write `WITH {}`", weight / 100.0),
+                    false => "a weight multiplies the firing strength of its rule; write a number from 0 to 1".into(),
+                };
+                Diagnostic::error("weight-outside-range", span, message).help(help)
+            }
             Wrong::TooDeep => Diagnostic::error(
                 "rule-too-deep",
                 span,
@@ -238,14 +238,17 @@ fn is_missing(
     if name.starts_with(['"', '\'']) && name.to_lowercase().contains(" is ") {
         return Some("remove the quotes: they make one name of the condition".into());
     }
-    if let Some((of, term)) = name.split_once('.')
-        && owner(kind, term).as_deref() == Some(of)
-    {
+    let parts = name.match_indices(['.', '_']).find_map(|(at, _)| {
+        let (of, term) = (name.get(..at)?, name.get(at + 1..)?);
+        let term = term.trim_start_matches("is_");
+        (owner(kind, term).as_deref() == Some(of)).then_some((of, term))
+    });
+    if let Some((of, term)) = parts {
         return Some(format!("write `{of} IS {term}`"));
     }
-    // For example `IF (temperature, cold) THEN`.
-    let next = found_here(rest.get(found.len()..).unwrap_or("").trim_start());
-    if found == "," && owner(kind, next).as_deref() == Some(name) {
+    // For example `IF (temperature, cold) THEN`, and `IF temperature(cold) THEN`.
+    let next = found_here(rest.trim_start_matches([',', '(', '[', '"', '\'', ' ']));
+    if found.starts_with([',', '(', '[']) && owner(kind, next).as_deref() == Some(name) {
         return Some(format!("write `{name} IS {next}`"));
     }
     if found.is_empty()
@@ -484,16 +487,17 @@ fn name_is_missing(what: &str, found: &str) -> Option<String> {
 
 /// Returns a suggestion for a weight such as `50%` or `weight 0.5`.
 fn weight_advice(rest: &str) -> String {
+    let rest = rest.trim_start_matches(['=', ':', ' ']);
     let mut words = rest.split_whitespace();
     let first = words.next().unwrap_or("");
+    if first.parse::<f64>().is_ok() {
+        return format!("write `WITH {first}`");
+    }
     let share = share_of_percentage(first);
     let named = words
         .next()
         .filter(|_| first.eq_ignore_ascii_case("weight"));
-    match (
-        share,
-        named.filter(|number| number.parse::<f64>().is_ok()),
-    ) {
+    match (share, named.filter(|number| number.parse::<f64>().is_ok())) {
         (Some(share), _) => format!("write `WITH {share}`"),
         (_, Some(number)) => format!("write `WITH {number}`"),
         _ => "a weight is a number from 0 to 1: `WITH 0.8`".into(),

@@ -20,6 +20,9 @@ pub fn share_of_percentage(text: &str) -> Option<f64> {
 #[must_use]
 pub fn number_advice(text: &str) -> Option<String> {
     let text = text.trim();
+    if plain(text).is_some() {
+        return None;
+    }
     if let Some(share) = share_of_percentage(text) {
         let percent = text.trim_end_matches('%').trim();
         return Some(match share {
@@ -27,8 +30,13 @@ pub fn number_advice(text: &str) -> Option<String> {
             _ => format!("write `{percent}`, or `{share}` if the value is a share"),
         });
     }
-    if let Some(positive) = text.strip_prefix(DASHES).filter(|rest| plain(rest).is_some()) {
-        return Some(format!("this dash is not a minus sign: write `-{positive}`"));
+    if let Some(positive) = text
+        .strip_prefix(DASHES)
+        .filter(|rest| plain(rest).is_some())
+    {
+        return Some(format!(
+            "this dash is not a minus sign: write `-{positive}`"
+        ));
     }
     if let Some(advice) = separators(text) {
         return Some(advice);
@@ -45,7 +53,9 @@ pub fn number_advice(text: &str) -> Option<String> {
     }
     let digits = text.replace(['O', 'o'], "0").replace('l', "1");
     if plain(&digits).is_some() {
-        return Some(format!("did you mean `{digits}`, with digits in place of letters?"));
+        return Some(format!(
+            "did you mean `{digits}`, with digits in place of letters?"
+        ));
     }
     let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.".contains(c)))?;
     let (number, unit) = text.split_at_checked(end)?;
@@ -61,7 +71,10 @@ pub fn number_advice(text: &str) -> Option<String> {
 }
 
 fn plain(text: &str) -> Option<f64> {
-    text.trim().parse().ok().filter(|number: &f64| number.is_finite())
+    text.trim()
+        .parse()
+        .ok()
+        .filter(|number: &f64| number.is_finite())
 }
 
 /// Returns advice for a decimal comma, or for separators of thousands. With both signs, the last one is the decimal mark.
@@ -79,9 +92,9 @@ fn separators(text: &str) -> Option<String> {
             // Three digits after a comma are thousands, or a fraction.
             let is_thousands = part.len() == 3 && (1..=3).contains(&digits.len()) && digits != "0";
             return Some(match is_thousands {
-                true => format!(
-                    "write `{whole}{part}`, or `{number}` if the comma is a decimal mark"
-                ),
+                true => {
+                    format!("write `{whole}{part}`, or `{number}` if the comma is a decimal mark")
+                }
                 false => point(&number),
             });
         }
@@ -115,25 +128,39 @@ mod tests {
         for (text, advice) in [
             ("20,5", "write a decimal point: `20.5`"),
             ("0,125", "write a decimal point: `0.125`"),
-            ("1,000", "write `1000`, or `1.000` if the comma is a decimal mark"),
+            (
+                "1,000",
+                "write `1000`, or `1.000` if the comma is a decimal mark",
+            ),
             ("1,000.5", "write the number without separators: `1000.5`"),
             ("1.234,5", "write the number without separators: `1234.5`"),
             ("40.000,0", "write the number without separators: `40000.0`"),
-            ("1,000,000", "write the number without separators: `1000000`"),
+            (
+                "1,000,000",
+                "write the number without separators: `1000000`",
+            ),
             ("1'000", "write the number without separators: `1000`"),
             ("\u{2212}12", "this dash is not a minus sign: write `-12`"),
-            ("15.48 %", "write `15.48`, or `0.1548` if the value is a share"),
+            (
+                "15.48 %",
+                "write `15.48`, or `0.1548` if the value is a share",
+            ),
             ("36 %", "write `36`, or `0.36` if the value is a share"),
             ("0%", "write only the number: `0`"),
             ("22V", "write the number without its unit: `22`"),
-            ("20mV", "write the number without its unit: `0.02` if it is in V, `20` if in mV"),
+            (
+                "20mV",
+                "write the number without its unit: `0.02` if it is in V, `20` if in mV",
+            ),
             ("1O", "did you mean `10`, with digits in place of letters?"),
             ("0x10", "write decimal digits only: `16`"),
             ("2*3", "write the number, not a calculation: `6`"),
         ] {
             assert_eq!(number_advice(text).as_deref(), Some(advice), "{text}");
         }
-        for text in ["2-3", "a,b", "much", "", "-", "1..2", "."] {
+        for text in [
+            "50", "-1", "1e3", "2-3", "a,b", "much", "", "-", "1..2", ".",
+        ] {
             assert_eq!(number_advice(text), None, "{text}");
         }
     }

@@ -7,7 +7,10 @@ use alloc::{
 };
 use core::ops::Range;
 
-use super::{Node, Scalar, Value, number::{number_advice, share_of_percentage}};
+use super::{
+    Node, Scalar, Value,
+    number::{number_advice, share_of_percentage},
+};
 use crate::{
     diagnostic::{Diagnostic, duplicate, either, meant, suggest},
     foreign,
@@ -430,14 +433,7 @@ impl Node {
             [whole, part] if part.span.start == whole.span.end + 1 => {
                 let (whole, part) = (whole.as_number_text()?, part.as_number_text()?);
                 let is_part = part.bytes().all(|c| c.is_ascii_digit());
-                // Three digits after a comma are thousands, rather than a fraction.
-                let is_thousands = part.len() == 3 && (1..=3).contains(&whole.len());
-                is_part.then(|| match is_thousands && whole != "0" {
-                    true => format!(
-                        "write the number without a comma: `{whole}{part}`, or with a decimal point: `{whole}.{part}`"
-                    ),
-                    false => format!("write a decimal point: `{whole}.{part}`"),
-                })
+                number_advice(&format!("{whole},{part}")).filter(|_| is_part)
             }
             _ => None,
         });

@@ -204,9 +204,17 @@ impl<'m> Validator<'m> {
                 count => (1..=count).map(|i| format!("term{i}")).collect(),
             };
             let peaks = names.iter().zip(&variable.terms);
-            let peaks: Vec<String> = peaks.map(|(name, term)| format!("{name}: {}", term.name)).collect();
-            finding.message = format!("the terms of {kind} `{}` are called by numbers, and none `{}`", variable.name, term.text);
-            finding.help = Some(format!("write names with peaks: `partition: {{{}}}`", peaks.join(", ")));
+            let peaks: Vec<String> = peaks
+                .map(|(name, term)| format!("{name}: {}", term.name))
+                .collect();
+            finding.message = format!(
+                "the terms of {kind} `{}` have numbers as names, and there is no term `{}`",
+                variable.name, term.text
+            );
+            finding.help = Some(format!(
+                "write names with peaks: `partition: {{{}}}`",
+                peaks.join(", ")
+            ));
             self.findings.push(finding);
             self.unread.push(&variable.name);
             return;

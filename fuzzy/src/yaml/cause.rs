@@ -190,7 +190,11 @@ pub(super) fn line(text: &str, finding: &Diagnostic) -> Option<Diagnostic> {
 /// Returns a finding if the line that starts at `start` is indented less than the first line of its mapping.
 fn indented_more(text: &str, start: usize) -> Option<Diagnostic> {
     let indent = |line: &str| line.len() - line.trim_start().len();
-    let here = indent(text.get(start..)?.lines().next()?);
+    let line = text.get(start..)?.lines().next()?;
+    let here = indent(line);
+    if line.get(..here)?.contains('\t') {
+        return None;
+    }
     let mut first = None;
     let mut end = start;
     for line in text.get(..start)?.split_inclusive('\n').rev() {
@@ -199,9 +203,13 @@ fn indented_more(text: &str, start: usize) -> Option<Diagnostic> {
         if content.is_empty() || content.starts_with('#') {
             continue;
         }
+        if line.get(..indent(line))?.contains('\t') {
+            return None;
+        }
         if indent(line) < here {
             let (at, line) = first.filter(|_| content.ends_with(':'))?;
-            let message = String::from("the line is indented more than the later ones of its mapping");
+            let message =
+                String::from("the line is indented more than the later ones of its mapping");
             let finding = Diagnostic::error("yaml-syntax", at..at + str::len(line), message);
             let help = "begin the keys of one mapping in the same column; if these are the keys of an input or output, write its name above them";
             return Some(finding.help(help));

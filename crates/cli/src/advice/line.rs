@@ -65,9 +65,10 @@ impl<'a> Line<'a> {
                     let ending = Path::new(value).extension();
                     let format = here.trim_start_matches('-');
                     let value = match ending.filter(|_| PICTURES.contains(here)) {
-                        Some(ending) if !ending.eq_ignore_ascii_case(format) => {
-                            Path::new(value).with_extension(format).display().to_string()
-                        }
+                        Some(ending) if !ending.eq_ignore_ascii_case(format) => Path::new(value)
+                            .with_extension(format)
+                            .display()
+                            .to_string(),
                         _ => value.to_owned(),
                     };
                     Some(format!("write `{here} {}`", in_shell(&value)))
@@ -203,6 +204,9 @@ impl<'a> Line<'a> {
                 return Some(format!("`plot` draws all variables: leave `{shown}` out"));
             }
             _ => {}
+        }
+        if name == "map" && word.parse::<f64>().is_ok() {
+            return Some("for a part of an axis write `--x INPUT:LOW..HIGH`".to_owned());
         }
         if name == "map" && path.extension().is_none() {
             let axes = positionals.iter().skip(1).zip(["--x", "--y"]);

@@ -50,7 +50,9 @@ pub(crate) fn improve(error: &mut clap::Error, program: &Command, words: &[OsStr
 /// Recognises a file behind an option that prints to standard output and takes no file, as in `--csv out.csv`.
 pub(crate) fn file_behind_switch(program: &Command, words: &[OsString]) -> Option<Failure> {
     let words = words.iter().skip(1).map(|word| word.to_str());
-    let words: Vec<String> = words.map(|word| Some(word?.to_owned())).collect::<Option<_>>()?;
+    let words: Vec<String> = words
+        .map(|word| Some(word?.to_owned()))
+        .collect::<Option<_>>()?;
     let line = Line::of(&words, program)?;
     let name = line.command.get_name();
     let pairs = line.words.iter().zip(line.words.iter().skip(1));

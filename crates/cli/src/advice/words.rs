@@ -96,7 +96,7 @@ pub(super) const RENAMED: &[(&str, &str)] = &[
         "--output",
     ),
     (
-        "--picture --image --img --figure --png --pdf --plot --graph --save-plot",
+        "--picture --image --img --figure --png --pdf --html --plot --graph --save-plot",
         "--svg",
     ),
     ("--report --html-report", "--html"),
@@ -205,6 +205,11 @@ pub(super) const OPTIONS: &[(&str, &str, &str)] = &[
         "fmt",
         "--output --out -o --stdout",
         "`fmt` formats files in place; to keep the original, write `flagred fmt - < IN.yaml > OUT.yaml`",
+    ),
+    (
+        "fmt",
+        "--write --fix --in-place --inplace -i -w",
+        "`fmt` formats files in place: leave the option out",
     ),
     (
         "check",

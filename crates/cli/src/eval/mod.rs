@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
     )]
     points: PathBuf,
 
-    /// The file to write [default: standard output]
+    /// The file to write, replaced if it exists [default: standard output]
     #[arg(short, long, value_name = "OUT.csv", default_value = "-", hide_default_value = true, value_parser = output::table_path)]
     output: PathBuf,
 

@@ -91,7 +91,9 @@ impl<'p> Evaluator<'p> {
             self.problems.push(problem);
         }
         let columns: Vec<&[f64]> = self.columns.iter().map(Vec::as_slice).collect();
-        let extents = columns.iter().map(|values| Extent::of(values.iter().copied()));
+        let extents = columns
+            .iter()
+            .map(|values| Extent::of(values.iter().copied()));
         let extents = extents.collect();
         let outputs = plan.engine.output_names().len();
         self.outcomes
@@ -368,7 +370,12 @@ fn has_formula(engine: &Engine, output: &str) -> bool {
     let output = outputs.find(|known| known.variable.name == output);
     output.is_some_and(|output| {
         let mut terms = output.variable.terms.iter();
-        terms.any(|term| matches!(term.membership_function, MembershipFunction::Function { .. }))
+        terms.any(|term| {
+            matches!(
+                term.membership_function,
+                MembershipFunction::Function { .. }
+            )
+        })
     })
 }
 

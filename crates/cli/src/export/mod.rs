@@ -70,7 +70,7 @@ pub(crate) struct Arguments {
         hide_default_value = true
     )]
     output: PathBuf,
-    /// Replace a rule set of another program if it exists
+    /// Replace a rule set of another program if it exists; code is always replaced
     #[arg(long)]
     force: bool,
 }
@@ -167,7 +167,10 @@ impl Arguments {
     fn tell_built_in(&self, what: &str) {
         if self.file == profile::DEFAULT && self.output != Path::new("-") {
             let written = self.output.display();
-            say(&format!("wrote `{written}`: the built-in {what} `{}`", self.file));
+            say(&format!(
+                "wrote `{written}`: the built-in {what} `{}`",
+                self.file
+            ));
         }
     }
 

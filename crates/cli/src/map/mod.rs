@@ -61,7 +61,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "OUTPUT")]
     of: Option<String>,
 
-    /// The file to write [default: standard output]
+    /// The file to write, replaced if it exists [default: standard output]
     #[arg(short, long, value_name = "FILE", value_parser = output::text_path)]
     output: Option<PathBuf>,
 
@@ -168,7 +168,14 @@ fn axis(text: &str) -> Result<AxisChoice, String> {
             name: name.to_owned(),
             part: Some(part),
         }),
-        None => Err("write `INPUT` or `INPUT:LOW..HIGH`".to_owned()),
+        None => {
+            let ends = part.split(['-', ',', ':']).map(str::trim);
+            let ends: Vec<&str> = ends.filter(|end| end.parse::<f64>().is_ok()).collect();
+            Err(match ends.as_slice() {
+                [low, high] => format!("write `{name}:{low}..{high}`"),
+                _ => "write `INPUT` or `INPUT:LOW..HIGH`".to_owned(),
+            })
+        }
     }
 }
 

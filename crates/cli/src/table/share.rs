@@ -49,8 +49,11 @@ impl Extent {
     pub(crate) fn warning(self, variable: &Variable) -> Option<String> {
         const FEWEST: u64 = 3;
         const NARROWEST: f64 = 10.0;
-        let Variable { name, low, high, .. } = variable;
-        let is_share = self.count >= FEWEST && self.has_fraction && self.low >= 0.0 && self.high <= 1.0;
+        let Variable {
+            name, low, high, ..
+        } = variable;
+        let is_share =
+            self.count >= FEWEST && self.has_fraction && self.low >= 0.0 && self.high <= 1.0;
         (is_share && high - low >= NARROWEST).then(|| {
             format!(
                 "warning: all {} values of `{name}` are from {} to {}, but its range is {low} to {high}: is the column a share instead of a percentage?",

@@ -154,7 +154,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let resumed = resumed(arguments, original, &settings)?;
     let begun = resumed.as_ref().unwrap_or(original);
     let (data, refused) = data(arguments, begun)?;
-    let failed = |error: TuneError| failure(&name, original, &error);
+    let failed = |error: TuneError| match &error {
+        TuneError::Unknown { name: unknown } if unknown.contains(',') => {
+            let option = if arguments.only.contains(unknown) {
+                "--only"
+            } else {
+                "--fix"
+            };
+            failure(&name, original, &error).help(rows::repeated(option, unknown))
+        }
+        _ => failure(&name, original, &error),
+    };
 
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
@@ -253,8 +263,14 @@ fn data(arguments: &Arguments, model: &Model) -> Result<(Data, Vec<String>), Fai
 
 /// Refuses rows whose outputs are not outcomes, if the loss needs these.
 fn outcomes(arguments: &Arguments, model: &Model, read: &rows::Data) -> Result<(), Failure> {
-    let truths = read.rows.iter().filter_map(|(row, _)| row.values.last().copied());
-    let others = truths.clone().filter(|truth| ![0.0, 1.0].contains(truth)).count();
+    let truths = read
+        .rows
+        .iter()
+        .filter_map(|(row, _)| row.values.last().copied());
+    let others = truths
+        .clone()
+        .filter(|truth| ![0.0, 1.0].contains(truth))
+        .count();
     let skips = arguments.rows.rewrite.format.skip_bad_rows && others < read.rows.len();
     if arguments.loss() == Loss::Squared || others == 0 || skips {
         return Ok(());
@@ -273,7 +289,9 @@ fn outcomes(arguments: &Arguments, model: &Model, read: &rows::Data) -> Result<(
     );
     let failure = Failure::unreadable(message);
     Err(match others < read.rows.len() {
-        true => failure.help("for other values use `--loss squared`, or leave their rows out with `--skip-bad-rows`"),
+        true => failure.help(
+            "for other values use `--loss squared`, or leave their rows out with `--skip-bad-rows`",
+        ),
         false => failure.help("for other values use `--loss squared`"),
     })
 }
@@ -283,7 +301,10 @@ fn warning(outcome: &Outcome) -> Option<String> {
     let (rows, moved) = (outcome.rows, outcome.tuned.moved.len());
     let plural = if rows == 1 { "" } else { "s" };
     let few = format!("{rows} row{plural} for {moved} numbers that moved");
-    let worse = outcome.validation.as_ref().filter(|it| it.after.value > it.before.value);
+    let worse = outcome
+        .validation
+        .as_ref()
+        .filter(|it| it.after.value > it.before.value);
     let why = match worse {
         Some(it) => format!(
             "the error on rows left out rises from {:.3} to {:.3}",
@@ -292,7 +313,9 @@ fn warning(outcome: &Outcome) -> Option<String> {
         None if rows < moved => few,
         None => return None,
     };
-    Some(format!("warning: {why}: add rows, or move fewer numbers with `--only`"))
+    Some(format!(
+        "warning: {why}: add rows, or move fewer numbers with `--only`"
+    ))
 }
 
 /// Returns the rule set with the numbers of a checkpoint, if that exists. It must not differ in anything else.

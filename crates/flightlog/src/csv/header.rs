@@ -137,10 +137,16 @@ pub(super) fn apply_header(
         }
         // For example `pwm_min_us` in place of `pwm_low_us`.
         let stem = low.split('_').next();
-        let mut others = header.iter().filter(|entry| !KEYS.contains(&entry.key.as_str()));
-        let other = others.find(|entry| entry.key.contains('_') && entry.key.split('_').next() == stem);
+        let mut others = header
+            .iter()
+            .filter(|entry| !KEYS.contains(&entry.key.as_str()));
+        let other =
+            others.find(|entry| entry.key.contains('_') && entry.key.split('_').next() == stem);
         let help = |missing: &str| match other {
-            Some(entry) => format!("write `{missing}` in place of `{}` in line {}", entry.key, entry.line),
+            Some(entry) => format!(
+                "write `{missing}` in place of `{}` in line {}",
+                entry.key, entry.line
+            ),
             None => "write both or neither".to_owned(),
         };
         let (low_value, high_value) = match (value(low)?, value(high)?) {

@@ -293,7 +293,11 @@ fn rule_block(paper: &mut Paper, block: &Rules<'_>, number: &mut usize) {
                 }
             }
             None => {
-                paper.leave_out(*index, "has a NOT before brackets", "write NOT before the terms");
+                paper.leave_out(
+                    *index,
+                    "has a NOT before brackets",
+                    "write NOT before the terms",
+                );
             }
         }
     }

@@ -188,7 +188,9 @@ fn without_comment(line: &str) -> &str {
 /// Whether a key is that of an upper or lower membership function, such as `MF2U`.
 fn is_of_type2(key: &str) -> bool {
     let key = key.to_ascii_uppercase();
-    let number = key.strip_prefix("MF").and_then(|key| key.strip_suffix(['U', 'L']));
+    let number = key
+        .strip_prefix("MF")
+        .and_then(|key| key.strip_suffix(['U', 'L']));
     number.is_some_and(|number| number.parse::<usize>().is_ok())
 }
 

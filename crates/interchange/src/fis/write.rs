@@ -77,7 +77,9 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
             Err(what) => {
                 let help = match what {
                     READS_OUTPUT => "write a rule set for each output: FIS has no stages",
-                    _ => "a rule of FIS joins one term of each input, either all by AND or all by OR",
+                    _ => {
+                        "a rule of FIS joins one term of each input, either all by AND or all by OR"
+                    }
                 };
                 paper.leave_out(index + 1, what, help);
             }

@@ -373,7 +373,11 @@ fn blocks(draft: &mut Draft<'_>, sections: &[&Section<'_>]) {
         }
         let uses = |word: &str| {
             let mut rules = section.all("rule");
-            rules.any(|rule| rule.split(" then ").next().is_some_and(|it| it.contains(word)))
+            rules.any(|rule| {
+                rule.split(" then ")
+                    .next()
+                    .is_some_and(|it| it.contains(word))
+            })
         };
         for (key, word, assumed) in [
             ("conjunction", " and ", "minimum"),
