@@ -569,7 +569,7 @@ fn number_of_statistic<'k>(
         let place = at.of(&["inputs", &input.name, key]);
         let finding = Diagnostic::warning("unit", place, message);
         Some(match meant {
-            Some(meant) => finding.help(format!("did you mean `{key}: {}`?", shown(meant))),
+            Some(meant) => finding.help(format!("did you mean `{key}: {meant}`?")),
             None => finding.help("write a threshold between these"),
         })
     };
@@ -578,7 +578,7 @@ fn number_of_statistic<'k>(
         Statistic::ShareAbove(threshold) => ("share_above", threshold),
         Statistic::Percentile(number) if number > 0.0 && number < 1.0 => {
             let message = format!("`percentile` is in percent, and {number} is a share");
-            return finding("percentile", message, Some(100.0 * number));
+            return finding("percentile", message, Some(libm::round(1e8 * number) / 1e6));
         }
         _ => return None,
     };
@@ -602,7 +602,7 @@ fn number_of_statistic<'k>(
     };
     let side = key.trim_start_matches("share_");
     let inside = |meant: &f64| *meant > low && *meant < high;
-    let what = format!("`{name}` is from {} to {}", shown(low), shown(high));
+    let what = format!("`{name}` is from {low} to {high}");
     let message = match (never, always) {
         (true, _) => format!("{what}, so it is never {side} {threshold}"),
         (_, true) => format!("{what}, so it is always {side} {threshold}"),
@@ -612,10 +612,10 @@ fn number_of_statistic<'k>(
         _ => return None,
     };
     let meant = match is_percent {
-        true => 100.0 * threshold,
-        false => threshold / 100.0,
+        true => Some(libm::round(1e8 * threshold) / 1e6),
+        false => Some(threshold / 100.0).filter(|_| threshold > 1.0),
     };
-    finding(key, message, Some(meant).filter(inside))
+    finding(key, message, meant.filter(inside))
 }
 
 /// The minimum and maximum of the values of a source; `None` if it is unbounded.

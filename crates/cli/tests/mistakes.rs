@@ -160,7 +160,7 @@ fn the_advice_for_mistakes_works() {
             (
                 "explain fan.yaml temperature=22% humidity=3",
                 2,
-                "write the number without its unit: `22`",
+                "write `22`, or `0.22` if the value is a share",
             ),
             (
                 "explain fan.yaml temperature=22",
@@ -432,6 +432,33 @@ fn the_advice_for_mistakes_works() {
 /// Mistakes of people who know other programs: the command line, the exit code, and a part of the message.
 const OF_OTHER_PROGRAMS: &[(&str, i32, &str)] = &[
     (
+        "explain fan.yaml temperature=1 humidity=3 --json x.json",
+        2,
+        "`flagred explain fan.yaml temperature=1 humidity=3 --json --output x.json` writes this file",
+    ),
+    (
+        "tune fan.yaml rows.csv -o out.yaml --only fan.slow,fan.fast",
+        2,
+        "`--only fan.slow --only fan.fast`",
+    ),
+    (
+        "map fan.yaml --x temperature:0-20",
+        2,
+        "write `temperature:0..20`",
+    ),
+    (
+        "map fan.yaml --x temperature 0 20",
+        2,
+        "write `--x INPUT:LOW..HIGH`",
+    ),
+    ("plot fan.yaml --html x.html", 2, "write `--svg x.svg`"),
+    ("fmt fan.yaml --write", 2, "leave the option out"),
+    (
+        "check fan.yaml --coverage 50",
+        2,
+        "write a number above 0 and at most 1\n",
+    ),
+    (
         "explain fan.yaml temperature 24 humidity 70",
         2,
         "write `temperature=24 humidity=70`",
@@ -584,7 +611,7 @@ const OF_OTHER_PROGRAMS: &[(&str, i32, &str)] = &[
     (
         "inspect flight.csv --csv",
         2,
-        "`--csv` is an option of `assess`",
+        "`flagred convert FLIGHT --output flight.csv`",
     ),
     ("convert flight.csv out.csv", 2, "write `--output out.csv`"),
     (
@@ -637,9 +664,9 @@ const OF_OTHER_PROGRAMS: &[(&str, i32, &str)] = &[
     ("map flight.csv", 3, "`flagred assess flight.csv`"),
     ("export --format fis fan.yaml", 2, "write `--fis`"),
     (
-        "export --fis fan.fis fan.yaml",
+        "export --fis new.fis fan.yaml",
         2,
-        "write `--fis fan.yaml --output fan.fis`",
+        "write `--fis fan.yaml --output new.fis`",
     ),
     ("export fan.yaml --matlab", 2, "write `--fis`"),
     (
@@ -781,11 +808,7 @@ const OF_OTHER_PROGRAMS: &[(&str, i32, &str)] = &[
         2,
         "`flagred assess flight.csv --csv > out.csv` writes this file",
     ),
-    (
-        "map fan.yaml --csv out.csv",
-        2,
-        "`flagred map fan.yaml --csv --output out.csv` writes this file",
-    ),
+    ("map fan.yaml --csv out.csv", 2, "write `--output out.csv`"),
     (
         "check fan.yaml --json out.json",
         2,
@@ -818,9 +841,9 @@ const OF_OTHER_PROGRAMS: &[(&str, i32, &str)] = &[
     ),
     ("map --json fan.yaml", 2, "write `--csv`"),
     (
-        "map fan.yaml --check table.csv",
+        "map fan.yaml --check earlier.csv",
         3,
-        "`flagred map fan.yaml --csv --output table.csv` writes it",
+        "`flagred map fan.yaml --csv --output earlier.csv` writes it",
     ),
     (
         "eval --json fan.yaml rows.csv",

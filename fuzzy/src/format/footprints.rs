@@ -14,7 +14,7 @@ use crate::{
         Lower, MembershipFunction, Term, Variable,
         footprint::{self, Footprint, NoFootprint},
     },
-    tree::{Fields, Node, Value},
+    tree::{Fields, Node, Value, percentage_advice},
 };
 
 /// The keys beside a membership function that give a term a lower one.
@@ -321,11 +321,8 @@ fn number_in(
     }
     let message = format!("{what} is {number}, but must be {range}");
     let mut finding = Diagnostic::error("wrong-parameter", node.span.clone(), message);
-    let share = number / 100.0;
-    finding.help = Some(match number > 1.0 && valid(share) {
-        true => format!("for {number} % write `{share}`"),
-        false => "write for example `0.1`".into(),
-    });
+    finding.help =
+        Some(percentage_advice(number).unwrap_or_else(|| "write for example `0.1`".into()));
     findings.push(finding);
     None
 }
@@ -458,7 +455,7 @@ mod tests {
         refused(
             "terms: {warm: {triangle: [4, 8, 16], lower_scale: 1.5}}",
             "`lower_scale` of term `warm` of input `x` is 1.5, but must be greater than 0, at most 1",
-            "for 1.5 % write `0.015`",
+            "write for example `0.1`",
         );
         refused(
             "terms: {warm: {gaussian: {mean: [22, 18], sd: 3}}}",

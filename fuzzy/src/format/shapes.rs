@@ -161,6 +161,10 @@ fn by_form(
                 format!("named parameters for the {name}")
             };
             let mut finding = node.unexpected(&expected);
+            let numbers: Vec<&str> = match &node.value {
+                Value::List(items) => items.iter().filter_map(Node::as_number_text).collect(),
+                _ => Vec::new(),
+            };
             if let Value::List(items) = &node.value
                 && form.as_list()
             {
@@ -169,7 +173,13 @@ fn by_form(
                     names.len(),
                     items.len()
                 );
-                finding.help = Node::list_advice(items, names.len());
+                let other = match (name, numbers.len()) {
+                    ("triangle", 4) => Some("trapezoid"),
+                    ("trapezoid", 3) => Some("triangle"),
+                    _ => None,
+                };
+                let other = other.map(|other| format!("write `{other}: [{}]`", numbers.join(", ")));
+                finding.help = Node::list_advice(items, names.len()).or(other);
             }
             finding.help.get_or_insert_with(|| spelling(form));
             findings.push(finding);
@@ -194,18 +204,25 @@ fn other_parameters(form: &Form, fields: &Fields<'_>) -> Diagnostic {
         all_of(&others)
     );
     let span = unknown.first().map_or(0..0, |entry| entry.key_span.clone());
-    // The number of each parameter, if every key has another meaning.
+    // The number of each parameter, if the keys have other meanings; the only other key is the remaining parameter.
+    let parameter = |entry: &Entry<'_>| foreign::parameter(form.name, entry.key, &names);
+    let entries = fields.entries().iter();
+    let (known, others): (Vec<&Entry<'_>>, Vec<_>) =
+        entries.partition(|entry| parameter(entry).is_some());
+    let rest = match others.as_slice() {
+        [only] => Some(*only),
+        _ => None,
+    };
     let meant = names.iter().map(|name| {
-        let is_meant =
-            |entry: &&Entry<'_>| foreign::parameter(form.name, entry.key, &names) == Some(name);
-        let mut entries = fields.entries().iter().filter(is_meant);
-        entries
-            .next()
+        let mut entries = known.iter().filter(|entry| parameter(entry) == Some(name));
+        let entry = entries.next().copied().or(rest);
+        entry
             .filter(|_| entries.next().is_none())?
             .value
             .as_number_text()
     });
     let meant: Option<Vec<&str>> = meant.collect();
+    let meant = meant.filter(|_| fields.entries().len() == names.len());
     let numbers = fields
         .entries()
         .iter()
@@ -255,7 +272,19 @@ fn points(
     spans: &mut TermSpans,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<MembershipFunction> {
-    let items = node.items(&format!("the points of {term}"), POINTS_HELP, findings)?;
+    let help = match &node.value {
+        // For example `{20: 0, 50: 1}`.
+        Value::Mapping(pairs) => {
+            let pairs = pairs.iter().map(|(x, degree)| {
+                Some(format!("[{}, {}]", x.as_text()?, degree.as_number_text()?))
+            });
+            let points: Option<Vec<String>> = pairs.collect();
+            points.map(|points| format!("write `piecewise: [{}]`", points.join(", ")))
+        }
+        _ => None,
+    };
+    let help = help.as_deref().unwrap_or(POINTS_HELP);
+    let items = node.items(&format!("the points of {term}"), help, findings)?;
     if let Some(first) = items.first()
         && items.iter().all(|item| item.as_text().is_some())
     {

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     diagnostic::{Diagnostic, either, is_curly_quote, meant, nearest, suggest},
-    tree::share_of_percentage,
+    tree::{percentage_advice, share_of_percentage},
 };
 
 /// A syntax error, with the remaining text at the position where it was detected.
@@ -152,10 +152,9 @@ impl Mistake<'_> {
                 .help(weight_advice(rest)),
             Wrong::Weight(weight) => {
                 let message = format!("the weight `{weight}` is outside [0, 1]");
-                let help = match weight > 1.0 && weight <= 100.0 {
-                    true => format!("for {weight} % write `WITH {}`", weight / 100.0),
-                    false => "a weight multiplies the firing strength of its rule; write a number from 0 to 1".into(),
-                };
+                let help = percentage_advice(weight).unwrap_or_else(|| {
+                    "a weight multiplies the firing strength of its rule; write a number from 0 to 1".into()
+                });
                 Diagnostic::error("weight-outside-range", span, message).help(help)
             }
             Wrong::TooDeep => Diagnostic::error(
@@ -250,6 +249,11 @@ fn is_missing(
     let next = found_here(rest.trim_start_matches([',', '(', '[', '"', '\'', ' ']));
     if found.starts_with([',', '(', '[']) && owner(kind, next).as_deref() == Some(name) {
         return Some(format!("write `{name} IS {next}`"));
+    }
+    if found == "," && kind == "input" {
+        return Some(format!(
+            "write a condition for each input: `{name} IS term AND {next} IS term`"
+        ));
     }
     if found.is_empty()
         || JOINTS
@@ -468,6 +472,9 @@ fn name_is_missing(what: &str, found: &str) -> Option<String> {
     }
     if !input && is("IS") {
         return Some("remove the second `IS`".into());
+    }
+    if what.contains("term") && found == "(" {
+        return Some("write the term without brackets: `IS very low`".into());
     }
     if what == "the name of an output" && is(":") {
         return Some("remove the colon".into());

@@ -16,6 +16,14 @@ pub fn share_of_percentage(text: &str) -> Option<f64> {
     Some(plain(text.trim().strip_suffix('%')?)? / 100.0)
 }
 
+/// Returns advice for a percentage in place of a share, `80` for 0.8; `None` for numbers that are hardly meant as such.
+#[must_use]
+pub fn percentage_advice(number: f64) -> Option<String> {
+    (10.0..=100.0)
+        .contains(&number)
+        .then(|| format!("for {number} % write `{}`", number / 100.0))
+}
+
 /// Returns advice for a text that is not a number, but probably means one.
 #[must_use]
 pub fn number_advice(text: &str) -> Option<String> {

@@ -12,6 +12,7 @@ use crate::{
         Defuzzifier, Formula, MembershipFunction, NoRuleFires, Output, Variable,
         document::{TermSpans, VariableSpans},
     },
+    tree::percentage_advice,
 };
 
 /// The minimum width of a range. With narrower ranges, products of degrees and distances lose digits.
@@ -61,8 +62,10 @@ impl Validator<'_> {
         if !(height > 0.0 && height <= 1.0) {
             let here = or(&spans.height, &spans.name);
             let message = format!("the height {height} of {what} is outside (0, 1]");
-            let help = "a height is the largest degree of membership: greater than 0, at most 1";
-            self.error("wrong-parameter", here, message, help);
+            let help = percentage_advice(height).unwrap_or_else(|| {
+                "a height is the largest degree of membership: greater than 0, at most 1".into()
+            });
+            self.error("wrong-parameter", here, message, &help);
         }
     }
 

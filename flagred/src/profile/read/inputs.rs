@@ -113,6 +113,16 @@ fn input(
         {
             finding.help = Some(format!("exchange them: `{{{word}: {}}}`", entry.key));
         }
+        // For example `{p95: motor_margin}`.
+        if let Some(percent) = entry
+            .key
+            .strip_prefix('p')
+            .and_then(|text| text.parse::<u8>().ok())
+            && let Some(signal) = entry.value.as_text()
+            && let Some(finding) = found.iter_mut().find(|one| one.span == entry.key_span)
+        {
+            finding.help = Some(format!("write `{{percentile: {percent}, of: {signal}}}`"));
+        }
         // For example `{std, motor_margin}`.
         let empty = fields.entries().iter().find(|other| {
             other.value.is_null() && other.key != entry.key && keys.contains(&other.key)
