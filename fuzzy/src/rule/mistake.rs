@@ -497,7 +497,10 @@ fn weight_advice(rest: &str) -> String {
     let rest = rest.trim_start_matches(['=', ':', ' ']);
     let mut words = rest.split_whitespace();
     let first = words.next().unwrap_or("");
-    if first.parse::<f64>().is_ok() {
+    if first
+        .parse::<f64>()
+        .is_ok_and(|weight| (0.0..=1.0).contains(&weight))
+    {
         return format!("write `WITH {first}`");
     }
     let share = share_of_percentage(first);

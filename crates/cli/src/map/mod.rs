@@ -227,8 +227,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             let (model, table) = (arguments.model.display(), table.display());
             format!("`flagred map {model} --csv --output {table}` writes it")
         };
-        return check::against(table, &evaluated)
-            .map_err(|failure| failure.instead_of(crate::path::CHECK, write));
+        return check::against(table, &evaluated).map_err(|failure| match table.exists() {
+            true => failure,
+            false => failure.help(write()),
+        });
     }
     if let Some(name) = arguments.output.as_ref().and_then(|path| path.to_str())
         && evaluated.engine.output_names().any(|output| output == name)

@@ -195,7 +195,8 @@ fn is_of_type2(key: &str) -> bool {
 }
 
 fn type2(draft: &mut Draft<'_>, part: &str) {
-    let message = format!("`{part}` is of a type-2 system, which cannot be imported");
+    let shown = unquoted(part);
+    let message = format!("`{shown}` is of a type-2 system, which cannot be imported");
     let help = "MATLAB's `convertToType1` makes it a system that can be read";
     draft.error("type-2", part, message, help);
 }

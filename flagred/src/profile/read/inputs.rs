@@ -251,7 +251,7 @@ fn input(
         };
         let signal = Signal::name_of(&signal).unwrap_or("motor_command");
         let help = match statistic {
-            Statistic::Percentile(number) => {
+            Statistic::Percentile(number) if *key == "percentile" => {
                 let percent = match number < 1.0 {
                     true => libm::round(1e8 * number) / 1e6,
                     false => number,
