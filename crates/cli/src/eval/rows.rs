@@ -365,7 +365,7 @@ impl<'p> Evaluator<'p> {
 }
 
 /// Returns whether a term of an output is a formula.
-fn has_formula(engine: &Engine, output: &str) -> bool {
+pub(super) fn has_formula(engine: &Engine, output: &str) -> bool {
     let mut outputs = engine.model().outputs.iter();
     let output = outputs.find(|known| known.variable.name == output);
     output.is_some_and(|output| {

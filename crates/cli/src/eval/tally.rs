@@ -1,6 +1,6 @@
 //! Counts of rows, for the report at the end.
 
-use super::{Plan, errors::Errors};
+use super::{Plan, errors::Errors, rows::has_formula};
 use crate::{output::say, table::Extent};
 
 /// Maximum number of bad rows that are reported individually.
@@ -141,8 +141,12 @@ impl Tally {
         }
         for (output, rows) in plan.engine.output_names().zip(&self.silent) {
             if rows.count > 0 {
+                let why = match has_formula(&plan.engine, output) {
+                    true => "no rule fires, or a formula has no finite value",
+                    false => "no rule fires",
+                };
                 say(&format!(
-                    "`{output}` has no value in {}: no rule fires ({})",
+                    "`{output}` has no value in {}: {why} ({})",
                     of(*rows),
                     first(*rows)
                 ));
