@@ -12,7 +12,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use fuzzy::Engine;
+use fuzzy::{Engine, model::MembershipFunction};
 
 use self::tally::Tally;
 
@@ -200,6 +200,21 @@ impl Plan {
             // A row that begins like a comment is quoted.
             .comment(Some(b'#'))
             .from_writer(buffer)
+    }
+
+    /// Returns whether a term of an output is a formula.
+    fn has_formula(&self, output: &str) -> bool {
+        let mut outputs = self.engine.model().outputs.iter();
+        let output = outputs.find(|known| known.variable.name == output);
+        output.is_some_and(|output| {
+            let mut terms = output.variable.terms.iter();
+            terms.any(|term| {
+                matches!(
+                    term.membership_function,
+                    MembershipFunction::Function { .. }
+                )
+            })
+        })
     }
 
     /// The header of the output.

@@ -1,11 +1,7 @@
 //! Rows of a table, evaluated and written as CSV.
 
 use csv::ByteRecord;
-use fuzzy::{
-    Engine,
-    engine::{Enclosure, IntervalOutcome, Outcome, Sequence, State},
-    model::MembershipFunction,
-};
+use fuzzy::engine::{Enclosure, IntervalOutcome, Outcome, Sequence, State};
 
 use super::{Plan, With, tally::Tally, uncertain};
 use crate::{
@@ -342,7 +338,7 @@ impl<'p> Evaluator<'p> {
         let silent = engine.output_names().zip(outcomes);
         let silent = silent.filter(|(_, outcome)| outcome.state == State::NoRuleFired);
         let silent = silent.map(|(name, outcome)| match outcomes.len() {
-            _ if outcome.coverage > 0.0 && has_formula(engine, name) => {
+            _ if outcome.coverage > 0.0 && self.plan.has_formula(name) => {
                 format!("a formula of `{name}` has no finite value")
             }
             1 => "no rule fires".to_owned(),
@@ -362,21 +358,6 @@ impl<'p> Evaluator<'p> {
             .collect::<Vec<_>>()
             .join("; ")
     }
-}
-
-/// Returns whether a term of an output is a formula.
-pub(super) fn has_formula(engine: &Engine, output: &str) -> bool {
-    let mut outputs = engine.model().outputs.iter();
-    let output = outputs.find(|known| known.variable.name == output);
-    output.is_some_and(|output| {
-        let mut terms = output.variable.terms.iter();
-        terms.any(|term| {
-            matches!(
-                term.membership_function,
-                MembershipFunction::Function { .. }
-            )
-        })
-    })
 }
 
 /// Returns whether a cell contains only visible characters and cannot be a spreadsheet formula.

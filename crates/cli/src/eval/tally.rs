@@ -1,6 +1,6 @@
 //! Counts of rows, for the report at the end.
 
-use super::{Plan, errors::Errors, rows::has_formula};
+use super::{Plan, errors::Errors};
 use crate::{output::say, table::Extent};
 
 /// Maximum number of bad rows that are reported individually.
@@ -141,7 +141,7 @@ impl Tally {
         }
         for (output, rows) in plan.engine.output_names().zip(&self.silent) {
             if rows.count > 0 {
-                let why = match has_formula(&plan.engine, output) {
+                let why = match plan.has_formula(output) {
                     true => "no rule fires, or a formula has no finite value",
                     false => "no rule fires",
                 };
