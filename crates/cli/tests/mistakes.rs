@@ -923,7 +923,11 @@ const OF_OTHER_PROGRAMS: &[(&str, i32, &str)] = &[
         3,
         "write `pwm_low_us` in place of `pwm_min_us` in line 1",
     ),
-    ("assess hexa.csv", 3, "add the columns of the other motors"),
+    (
+        "assess hexa.csv",
+        3,
+        "add the columns that are missing, or correct `frame`",
+    ),
     ("assess copter.param", 3, "is a list of parameters"),
     ("assess log.mat", 3, "name the .bin or .ulg log"),
     ("assess .", 3, "`.` is a folder"),

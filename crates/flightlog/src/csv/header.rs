@@ -282,19 +282,15 @@ pub(super) fn apply_header(
         let entry = header
             .iter()
             .find(|entry| keys.contains(&entry.key.as_str()));
-        let of_frame = keys.contains(&"frame") && columns > 0 && !is_ours;
         if let (Some(entry), Some(motors)) = (entry, motors)
-            && (columns > usize::from(motors) || of_frame && columns < usize::from(motors))
+            && columns > usize::from(motors)
         {
             let stem = layout.stem;
             let text = format!(
                 "`{}` is `{}`, which has {motors} motors, but there are columns `{stem}1` to `{stem}{columns}`",
                 entry.key, entry.value
             );
-            let help = match columns > usize::from(motors) {
-                true => "correct it, or give columns that are not motors other names",
-                false => "correct it, or add the columns of the other motors",
-            };
+            let help = "correct it, or give columns that are not motors other names";
             return Err(problem(entry.line, text, help));
         }
     }
