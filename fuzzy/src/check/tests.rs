@@ -509,7 +509,7 @@ fn parts_without_an_effect_or_a_value_are_found() {
         ),
         (
             shoulder,
-            "terms: {slow: {constant: 0}, fast: {function: sqrt(x - 99)}}, defuzzifier: weighted_average",
+            "terms: {slow: {constant: 0}, fast: {function: sqrt(x)}}, defuzzifier: weighted_average",
         ),
     ] {
         assert_eq!(found(term, output, none), "", "{term} {output}");
