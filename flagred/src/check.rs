@@ -214,7 +214,7 @@ fn dropped(first: &Profile, other: &Profile, place: &[&str], at: &Places) -> Vec
         is_dropped.then(|| {
             let message = format!("`{name}` has no `elevated_risk`, unlike `{name}` in `verdict`");
             let help = format!(
-                "a written level replaces the whole level: write `elevated_risk: {}`, too",
+                "a level that is written here replaces the whole level of `verdict`: write `elevated_risk: {}`, too",
                 shown(threshold)
             );
             Diagnostic::warning(
@@ -377,7 +377,9 @@ fn reached(
                 true => {
                     "lower the threshold in `verdict`, or make the last term of the output narrower: the centroid of a term is inside the term"
                 }
-                false => "raise the threshold in `verdict` above the risk at rest",
+                false => {
+                    "raise the threshold in `verdict` above the lowest risk that the rules give"
+                }
             };
             let help = match limit > 0.0 && limit <= 1.0 && !above {
                 true => format!("risks are in percent: did you mean {}?", limit * 100.0),
@@ -394,7 +396,7 @@ fn reached(
             "`{name}` is never lowered: it lasts until the risk falls below {until}, but the rules give at least {}",
             shown(low)
         );
-        let help = "raise `until` above the risk at rest";
+        let help = "raise `until` above the lowest risk that the rules give";
         let place = place(&["until", "risk"]);
         found.push(Diagnostic::warning("out-of-reach", place, message).help(help));
     }
@@ -414,6 +416,9 @@ fn signal(
         let unit = known.iter().find(|(known, _)| *known == name);
         unit.map(|(_, unit)| *unit)
     };
+    if let Some(found) = number_of_statistic(input, unit_of, at) {
+        return Some(found);
+    }
     if let Signal::Difference { a, b } = &input.source.signal {
         let message = match (unit_of(a), unit_of(b)) {
             (Some(of_a), Some(of_b)) if normal(of_a) != normal(of_b) => {
@@ -542,8 +547,8 @@ fn normal(unit: &str) -> String {
     unit.to_ascii_lowercase()
 }
 
-/// The minimum and maximum of the values of a source; `None` if it is unbounded.
-fn range(source: &Source) -> Option<(f64, f64)> {
+/// The minimum and maximum of a signal, after the motors of a sample are combined.
+fn range_of_signal(source: &Source) -> (f64, f64) {
     let (low, high) = match &source.signal {
         Signal::MotorMargin => (0.0, 0.5),
         Signal::MotorCommand | Signal::MotorMarginLowSide | Signal::MotorMarginHighSide => {
@@ -552,11 +557,76 @@ fn range(source: &Source) -> Option<(f64, f64)> {
         Signal::CommandNoise => (0.0, 1.0),
         _ => (f64::NEG_INFINITY, f64::INFINITY),
     };
-    let width = high - low;
-    let (low, high) = match source.motors {
-        Motors::Std => (0.0, width / 2.0),
+    match source.motors {
+        Motors::Std => (0.0, (high - low) / 2.0),
         Motors::Pooled | Motors::Mean | Motors::Min | Motors::Max | Motors::One(_) => (low, high),
+    }
+}
+
+/// Finds a number of a statistic in another unit: a threshold that the signal is always or never beyond, and a percentile
+/// as a share.
+fn number_of_statistic<'k>(
+    input: &ProfileInput,
+    unit_of: impl Fn(&str) -> Option<&'k str>,
+    at: &Places,
+) -> Option<Diagnostic> {
+    let source = &input.source;
+    let finding = |key: &str, message: String, meant: Option<f64>| {
+        let place = at.of(&["inputs", &input.name, key]);
+        let finding = Diagnostic::warning("unit", place, message);
+        Some(match meant {
+            Some(meant) => finding.help(format!("did you mean `{key}: {meant}`?")),
+            None => finding.help("write a threshold between these"),
+        })
     };
+    let (key, threshold) = match source.statistic {
+        Statistic::ShareBelow(threshold) => ("share_below", threshold),
+        Statistic::ShareAbove(threshold) => ("share_above", threshold),
+        Statistic::Percentile(number) if number > 0.0 && number < 1.0 => {
+            let message = format!("`percentile` is in percent, and {number} is a share");
+            return finding("percentile", message, Some(libm::round(1e8 * number) / 1e6));
+        }
+        _ => return None,
+    };
+    let name = match &source.signal {
+        Signal::Named(name) => name,
+        signal => Signal::name_of(signal)?,
+    };
+    let is_percent = unit_of(name) == Some("%");
+    let (low, high) = match is_percent {
+        true => (0.0, 100.0),
+        false => range_of_signal(source),
+    };
+    let is_above = key == "share_above";
+    let never = match is_above {
+        true => threshold >= high,
+        false => threshold <= low,
+    };
+    let always = match is_above {
+        true => threshold < low,
+        false => threshold > high,
+    };
+    let side = key.trim_start_matches("share_");
+    let inside = |meant: &f64| *meant > low && *meant < high;
+    let what = format!("`{name}` is from {low} to {high}");
+    let message = match (never, always) {
+        (true, _) => format!("{what}, so it is never {side} {threshold}"),
+        (_, true) => format!("{what}, so it is always {side} {threshold}"),
+        _ if is_percent && threshold < 1.0 => {
+            format!("`{name}` is in percent, and {threshold} is a share")
+        }
+        _ => return None,
+    };
+    let meant = match is_percent {
+        true => Some(libm::round(1e8 * threshold) / 1e6),
+        false => Some(threshold / 100.0).filter(|_| threshold > 1.0),
+    };
+    finding(key, message, meant.filter(inside))
+}
+
+/// The minimum and maximum of the values of a source; `None` if it is unbounded.
+fn range(source: &Source) -> Option<(f64, f64)> {
+    let (low, high) = range_of_signal(source);
     let (low, high) = match source.statistic {
         Statistic::ShareBelow(_) | Statistic::ShareAbove(_) => (0.0, 1.0),
         Statistic::Std | Statistic::StdLessNoise => (0.0, (high - low) / 2.0),

@@ -113,7 +113,7 @@ pub enum EstimatorError {
         output: String,
     },
     /// The rule set has interval type-2 terms.
-    #[error("the rule set has type-2 terms, with which a risk is not supported")]
+    #[error("the rule set has type-2 terms, which a profile does not support")]
     Type2,
 }
 

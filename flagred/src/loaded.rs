@@ -2,6 +2,7 @@
 
 use std::{
     env,
+    ffi::OsStr,
     path::{Path, PathBuf},
 };
 
@@ -201,7 +202,13 @@ fn compiled<E>(profile: &Profile, file: String, source: Source) -> Result<Source
             "profile `{}` names `{file}`, which is not a rule set",
             profile.name
         ))
-        .help("a rule set has the keys `inputs`, `outputs` and `rules`"));
+        .help(match Path::new(&file).extension().and_then(OsStr::to_str) {
+            Some("fis" | "fll" | "fcl" | "fml") => format!(
+                "a profile needs a rule set in YAML: `flagred import {file} --output {}`",
+                Path::new(&file).with_extension("yaml").display()
+            ),
+            _ => "a rule set has the keys `inputs`, `outputs` and `rules`".to_owned(),
+        }));
     }
     match source.engine().err() {
         None => Ok(source),
@@ -280,8 +287,18 @@ pub fn rules<E>(
         ))
         .help("name a file in it"));
     }
+    let beside = rule_sets_in(folder);
     let names = shipped::RULE_SETS.iter().map(|known| known.name);
-    let help = match nearest(&profile.rules, names) {
+    let names = names.chain(beside.iter().map(String::as_str));
+    let is_named = |file: &&String| {
+        let text = folder.and_then(|folder| read(&folder.join(file)).ok());
+        let name =
+            text.and_then(|text| Some(Source::new(text).document().ok()?.model.name.clone()));
+        Path::new(file).file_stem() == Some(OsStr::new(&profile.rules))
+            || name.as_ref() == Some(&profile.rules)
+    };
+    let meant = beside.iter().find(is_named).map(String::as_str);
+    let help = match meant.or_else(|| nearest(&profile.rules, names)) {
         Some(near) => format!("did you mean `{near}`?"),
         None => format!(
             "built in are {}; paths are relative to the folder of the profile",
@@ -293,6 +310,22 @@ pub fn rules<E>(
         profile.name, profile.rules
     ))
     .help(help))
+}
+
+/// The YAML files in the folder of a profile, by name.
+fn rule_sets_in(folder: Option<&Path>) -> Vec<String> {
+    let folder = folder.map(|folder| match folder.as_os_str().is_empty() {
+        true => Path::new("."),
+        false => folder,
+    });
+    let files = folder.and_then(|folder| folder.read_dir().ok());
+    let names = files.into_iter().flatten().flatten();
+    let names = names.filter_map(|file| file.file_name().into_string().ok());
+    let mut names: Vec<String> = names
+        .filter(|name| Path::new(name).extension() == Some(OsStr::new("yaml")))
+        .collect();
+    names.sort();
+    names
 }
 
 /// The names of the built-in rule sets.

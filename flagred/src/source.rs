@@ -105,6 +105,13 @@ impl Signal {
             .map_or_else(|| Signal::Named(name.into()), |(_, signal)| signal)
     }
 
+    /// The name of a signal that is computed from the commands of the motors; `None` for other signals.
+    pub(crate) fn name_of(signal: &Signal) -> Option<&'static str> {
+        let mut all = OF_MOTORS.iter().chain(&OF_ALL_MOTORS);
+        all.find(|(_, known)| known == signal)
+            .map(|(name, _)| *name)
+    }
+
     /// The names of the signals that samples must contain to compute this signal.
     pub fn carried(&self) -> impl Iterator<Item = &str> + Clone {
         let (first, second) = match self {

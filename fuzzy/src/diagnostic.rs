@@ -391,7 +391,10 @@ pub(crate) fn duplicate(
             "duplicate-term",
             "the terms of a variable must have different names; rename one of them",
         ),
-        "finding" => ("duplicate-key", "keep one, with both reasons"),
+        "finding" => (
+            "duplicate-key",
+            "keep one entry, and write both reasons in it",
+        ),
         "block" => (
             "duplicate-block",
             "rule blocks must have different names; rename one of them",

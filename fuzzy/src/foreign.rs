@@ -28,17 +28,22 @@ pub(crate) const WORDS: &[(&str, &[&str])] = &[
     ("spikemf", &["spike"]),
     // Parameters of membership functions.
     ("mu", &["mean"]),
-    ("c", &["mean", "center"]),
-    ("centre", &["center", "mean"]),
-    ("center", &["mean"]),
+    ("c", &["mean", "center", "inflection", "constant"]),
+    ("centre", &["center", "mean", "inflection"]),
+    ("center", &["mean", "inflection"]),
     ("mean", &["center"]),
     ("sigma", &["sd"]),
+    ("sig", &["sd"]),
+    ("min", &["range", "minimum"]),
+    ("max", &["range", "maximum"]),
     ("std", &["sd"]),
     ("stddev", &["sd", "std"]),
     ("standarddeviation", &["sd", "std"]),
     ("const", &["constant"]),
     ("value", &["constant"]),
     ("number", &["constant"]),
+    ("umf", &["upper"]),
+    ("lmf", &["lower"]),
     // Statistics of a profile.
     ("average", &["mean"]),
     ("avg", &["mean"]),
@@ -124,6 +129,12 @@ pub(crate) const WORDS: &[(&str, &[&str])] = &[
     ("intensify", &["extremely"]),
 ];
 
+/// The letters of the parameters of membership functions in MATLAB and scikit-fuzzy, with the names here.
+const LETTERS: &[(&str, &[(&str, &str)])] = &[
+    ("bell", &[("a", "width"), ("b", "slope"), ("c", "center")]),
+    ("sigmoid", &[("a", "slope"), ("c", "inflection")]),
+];
+
 /// Keys of other programs whose information belongs elsewhere in a rule set, with a suggestion.
 const ELSEWHERE: &[(&str, &str)] = &[
     (
@@ -145,7 +156,15 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ),
     (
         "<<",
-        "merge keys have no meaning here: write the keys out, or repeat a whole value with `&name` and `*name`",
+        "merge keys are not supported: write the keys out, or repeat a whole value with `&name` and `*name`",
+    ),
+    (
+        "implication",
+        "write it in the `operators` of the rule set: `operators: {implication: product}`",
+    ),
+    (
+        "aggregation",
+        "write it in an output, or in the `operators` of the rule set",
     ),
     ("andmethod", "write `operators: {and: minimum}`"),
     ("ormethod", "write `operators: {or: maximum}`"),
@@ -165,6 +184,19 @@ pub(crate) fn meant<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str
     let meanings = known.map_or(&[][..], |(_, meanings)| meanings);
     let is_meant = |candidate: &&str| meanings.contains(candidate) || folded(candidate) == word;
     candidates.into_iter().filter(is_meant).collect()
+}
+
+/// Returns the parameter of a membership function that a key names: the same name, a letter, or another program's word.
+pub(crate) fn parameter<'a>(function: &str, key: &str, names: &[&'a str]) -> Option<&'a str> {
+    let letters = LETTERS.iter().find(|(name, _)| *name == function);
+    let mut letters = letters.map_or(&[][..], |(_, letters)| letters).iter();
+    let named = |name: &str| names.iter().copied().find(|known| *known == name);
+    let of_letter = letters
+        .find(|(letter, _)| *letter == key)
+        .map(|(_, name)| *name);
+    named(key)
+        .or_else(|| named(of_letter?))
+        .or_else(|| meant(key, names.iter().copied()).first().copied())
 }
 
 /// Returns a suggestion for a key whose information belongs elsewhere.

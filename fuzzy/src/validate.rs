@@ -156,7 +156,9 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
     validator.blocks(spans);
     validator.interval_outputs(spans);
     validator.findings.extend(circles(model, spans));
-    validator.findings
+    let mut findings = validator.findings;
+    findings.retain(|finding| finding.code != "unknown-variable" || !spans.names_unread);
+    findings
 }
 
 /// Returns a finding if the model exceeds a limit. The analysis of larger models takes minutes, and they are never

@@ -213,7 +213,7 @@ return load_all, 1000
 --     added = added and param:add_param(157, i, parameter[1], parameter[2])
 --   end
 --   if not added then
---     gcs:send_text(4, "FLAGRED: no parameters, the defaults hold")
+--     gcs:send_text(4, "FLAGRED: no parameters, defaults are used")
 --   end
 -- end
 -- 
@@ -427,7 +427,7 @@ return load_all, 1000
 --     end
 --   end
 --   if #factors ~= motors or known ~= motors then
---     gcs:send_text(6, "FLAGRED: frame unknown, turning counts")
+--     gcs:send_text(6, "FLAGRED: frame unknown, turns add risk")
 --     return
 --   end
 --   yaw_share = shares_of(factors, 3)
@@ -1608,7 +1608,7 @@ return load_all, 1000
 --     return
 --   end
 --   if not is_open and level > 0 then
---     gcs:send_text(severity, text .. " stays: motors not as before")
+--     gcs:send_text(severity, text .. " stays: motor balance is off")
 --     return
 --   end
 --   if is_open and by_elevated then

@@ -43,7 +43,7 @@ fn an_unsuitable_template_is_refused_with_help() {
         ),
         (
             VARIABLES.replace("rules: []", "  more: {range: [0, 1], partition: [a, b]}\nrules: []"),
-            "help: learn with one of these outputs and those that it reads",
+            "help: keep one of these outputs, and the outputs that it reads",
         ),
         (
             VARIABLES.replace("rules: []", "blocks: {one: {rules: [IF margin IS low THEN risk IS low]}}"),

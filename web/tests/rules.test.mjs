@@ -354,7 +354,7 @@ test('files in other formats are opened by drop and by button, and are written',
 
   const down = page.waitForEvent('download');
   await page.getByLabel('Download').selectOption('FLL');
-  const leave = page.getByRole('button', { name: 'Leave it out and go on' });
+  const leave = page.getByRole('button', { name: 'Leave it out and continue' });
   const which = await Promise.race([down.then(() => 'down'), leave.waitFor().then(() => 'asked')]);
   if (which === 'asked') await leave.click();
   const file = await down;

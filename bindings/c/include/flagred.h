@@ -286,9 +286,9 @@ typedef struct flagred_program {
     uint32_t first_step, end_step, first_action, end_action, first_hedge, end_hedge;
 } flagred_program;
 
-typedef struct flagred_step {
+typedef struct flagred_antecedent_step {
     uint32_t op, literal;
-} flagred_step;
+} flagred_antecedent_step;
 
 typedef struct flagred_block {
     double strength;
@@ -441,7 +441,7 @@ struct flagred_rules {
     FLAGRED_ARRAY(flagred_edge, edges);
     FLAGRED_ARRAY(flagred_action, actions);
     FLAGRED_ARRAY(flagred_program, programs);
-    FLAGRED_ARRAY(flagred_step, steps);
+    FLAGRED_ARRAY(flagred_antecedent_step, steps);
     FLAGRED_ARRAY(flagred_block, blocks);
     FLAGRED_ARRAY(flagred_output, outputs);
     FLAGRED_ARRAY(flagred_pair, pairs);

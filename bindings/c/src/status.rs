@@ -26,7 +26,7 @@ pub(crate) fn text(status: i32) -> &'static CStr {
         4 => c"the profile reads a motor that the vehicle does not have",
         5 => c"the memory is too small, or not aligned to 16 bytes",
         6 => c"the lower limit of a motor is not below its upper limit",
-        7 => c"the geometry does not distinguish roll, pitch, yaw and thrust of the motors",
+        7 => c"the factors of the motors do not separate roll, pitch, yaw and thrust, or a motor has none",
         8 => c"the numbers of values or outcomes differ from those of inputs or outputs, or there are too many commands",
         _ => c"unknown status",
     }

@@ -150,7 +150,7 @@ impl Profile {
     ///     The language cannot express the profile.
     fn to_code(&self, language: &str) -> PyResult<String> {
         let Some(chosen) = rule_set::language(language) else {
-            let message = format!("`{language}` is not a language of exported code");
+            let message = format!("code cannot be exported in the language `{language}`");
             return Err(data_error(
                 message,
                 Some("write `rust`, `c` or `lua`".into()),

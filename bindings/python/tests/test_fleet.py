@@ -506,7 +506,7 @@ def test_each_file_counts_once_and_other_entries_are_skipped(tmp_path, here, cap
     sources = [str(folder), str(folder / "below"), str(tmp_path / "link")]
     assert fleet.assess(sources, str(out), recursive=True, dry_run=True).listed == 2
     assert main(["assess", str(folder), "--out", str(out), "--dry-run"]) == 0
-    assert "4 skipped: names that are not UTF-8, or not of files" in capsys.readouterr().err
+    assert "4 skipped: the name is not UTF-8, or it is not a file" in capsys.readouterr().err
 
 
 def test_a_link_to_a_log_elsewhere_counts(tmp_path, here):
@@ -570,7 +570,7 @@ def test_a_torn_file_of_the_dataset_is_named(kind, logs, tmp_path, here, capsys)
     torn = tear(sorted((out / kind).rglob("*.parquet"))[-1])
     assert main(["report", str(out), "-o", str(tmp_path / "fleet.html")]) == 3
     told = capsys.readouterr().err
-    assert f"`{torn}` is damaged" in told and "help: restore the file, or delete all files of its name" in told
+    assert f"`{torn}` is damaged" in told and "help: restore the file, or delete all files with its name" in told
     assert main(["compact", str(out)]) == 3
     assert f"`{torn}` is damaged" in capsys.readouterr().err
     if kind == "flights":

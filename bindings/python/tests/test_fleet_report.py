@@ -124,7 +124,7 @@ def test_a_command_that_fails_is_run_again(dataset, tmp_path, capsys):
     arguments = ["report", str(dataset), "-o", str(tmp_path / "fleet.html"), "--alert-command", "exit 7"]
     for _ in range(2):
         assert main(arguments) == 2
-        assert "error: the alert command ended with 7: `exit 7`" in capsys.readouterr().err
+        assert "error: the alert command failed with exit code 7: `exit 7`" in capsys.readouterr().err
     assert (tmp_path / "fleet.html").exists()
 
 

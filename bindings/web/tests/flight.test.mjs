@@ -101,7 +101,7 @@ test('thresholds are changed in the text of a profile', () => {
   assert.equal(flight.assess(tried).brief().verdict, 'WARN');
   assert.match(tried.text, /clear_after_s: 7 +# a level is lowered when it has not been held for this time/);
   assert.equal(Profile.fromText('x.yaml', tried.text).verdict.clear_after_s, 7);
-  assert.throws(() => profile.withVerdict({ warn: { raise: { risk_pct: 40 } } }), { message: /held until 43, which is above 40\nhelp: / });
+  assert.throws(() => profile.withVerdict({ warn: { raise: { risk_pct: 40 } } }), { message: /is 43, above 40, at which the level is raised\nhelp: / });
 });
 
 test('a rule set replaces the one that a profile names', () => {

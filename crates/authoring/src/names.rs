@@ -223,7 +223,7 @@ pub fn rename(document: &Document, offset: usize, new: &str) -> Result<Vec<Range
     match renamed.is_some_and(|renamed| meanings(&renamed) == meanings(rules)) {
         true => Ok(spans),
         false => Err(format!(
-            "`{new}` would not mean the same in a formula or a linear function; write letters, digits and `_`"
+            "`{new}` cannot be read as a name in a formula or a linear function; write letters, digits and `_`"
         )),
     }
 }

@@ -166,7 +166,7 @@ fn examine<'s>(source: &'s Source, arguments: &Arguments) -> Result<Examined<'s>
     options.monotone = arguments.claims.monotone()?;
     flagred_authoring::examine(source, &options).map_err(|finding| {
         Failure::usage(format!("`--rising` or `--falling`: {}", finding.message))
-            .help_if(finding.help)
+            .help_if(arguments.claims.joined().or(finding.help))
     })
 }
 

@@ -14,7 +14,7 @@ pub(crate) struct Arguments {
     #[arg(value_name = "LOG")]
     log: PathBuf,
 
-    /// The file to write; `-` is standard output
+    /// The file to write, replaced if it exists; `-` is standard output
     #[arg(short, long, value_name = "OUT.csv", value_parser = output::csv_path)]
     output: PathBuf,
 

@@ -10,11 +10,11 @@ use fuzzy::{
     diagnostic::suggest,
     drawing::{explanation_svg, explanation_text, short, silent_text, what_if_text},
     model::Variable,
+    tree::number_advice,
 };
 
 use crate::{
     failure::{Exit, Failure},
-    numbers,
     output::{self, Files, print},
     rule_set,
     table::{Format, is_table},
@@ -31,7 +31,7 @@ pub(crate) struct Arguments {
     /// Explain each row of this table: print it with the value, the dominant rule and the shares of the rules for each output
     #[arg(long, alias = "csv", value_name = "POINTS.csv", conflicts_with_all = ["inputs", "json", "svg"])]
     rows: Option<PathBuf>,
-    /// The file to write [default: standard output]
+    /// The file to write, replaced if it exists [default: standard output]
     #[arg(short, long, value_name = "FILE", value_parser = output::text_path)]
     output: Option<PathBuf>,
     /// Print a JSON document instead of text
@@ -93,15 +93,15 @@ fn assignment(model: &Model, given: &[String], text: &str) -> Result<(String, f6
                 term.is_some_and(|input| input.terms.iter().any(|term| term.name == value));
             let advice = match is_term {
                 true => Some(format!("`{value}` is a term; write a number")),
-                false => number_advice(value),
+                false => value_advice(value),
             };
             Err(failure.help_if(advice))
         }
     }
 }
 
-/// Advice for a number with a decimal comma or a unit.
-fn number_advice(text: &str) -> Option<String> {
+/// Advice for a value that is not a finite number.
+fn value_advice(text: &str) -> Option<String> {
     if ["nan", "na", ""]
         .iter()
         .any(|unknown| text.eq_ignore_ascii_case(unknown))
@@ -111,7 +111,7 @@ fn number_advice(text: &str) -> Option<String> {
     if text.contains('=') {
         return Some("separate the values by spaces".into());
     }
-    numbers::advice(text)
+    number_advice(text)
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {

@@ -102,6 +102,14 @@ impl Failure {
         }
     }
 
+    /// Replaces a general help by a better one.
+    pub(crate) fn instead_of(mut self, general: &str, help: impl FnOnce() -> String) -> Self {
+        if self.help.as_deref() == Some(general) {
+            self.help = Some(help());
+        }
+        self
+    }
+
     /// Returns the message without its help.
     pub(crate) fn message(&self) -> &str {
         &self.message
@@ -174,6 +182,9 @@ impl From<ReadError> for Failure {
                 if source.kind() == io::ErrorKind::NotFound && !path.starts_with("http") =>
             {
                 failure.help(path::missing(path))
+            }
+            ReadError::Io { path, source } if source.kind() == io::ErrorKind::IsADirectory => {
+                cannot_read(path, source)
             }
             _ => failure.help_if(error.help()),
         }

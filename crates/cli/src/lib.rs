@@ -205,15 +205,18 @@ fn help_of_help(arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
     arguments
 }
 
-/// Parses a command line. A word such as `-1` counts as the value of the option before it, because the parser of that
-/// value reports a better error.
-fn parse(arguments: &[OsString]) -> Result<Arguments, clap::Error> {
-    let mut command = Arguments::command().mut_subcommands(|subcommand| {
+/// Returns the options of all commands. `-1` is a value of the option before it, whose parser has the better message.
+fn program() -> clap::Command {
+    Arguments::command().mut_subcommands(|subcommand| {
         subcommand.mut_args(|argument| {
             let takes_value = argument.get_action().takes_values() && !argument.is_positional();
             argument.allow_negative_numbers(takes_value)
         })
-    });
+    })
+}
+
+fn parse(arguments: &[OsString]) -> Result<Arguments, clap::Error> {
+    let mut command = program();
     let parsed = command.try_get_matches_from_mut(arguments);
     let parsed = parsed.and_then(|matches| {
         Arguments::from_arg_matches(&matches).map_err(|error| error.format(&mut command))
@@ -228,10 +231,13 @@ fn parse(arguments: &[OsString]) -> Result<Arguments, clap::Error> {
 pub fn run(arguments: impl Iterator<Item = OsString>) -> u8 {
     let arguments = help_of_help(arguments);
     let code = match parse(&arguments) {
-        Ok(arguments) => match arguments.command.run() {
-            Ok(exit) => exit.code(),
-            Err(failure) => failure.report(),
-        },
+        Ok(parsed) => {
+            let done = match advice::file_behind_switch(&program(), &arguments) {
+                Some(failure) => Err(failure),
+                None => parsed.command.run(),
+            };
+            done.map_or_else(Failure::report, Exit::code)
+        }
         Err(error) => {
             let other = || advice::other_command(&error, &arguments);
             match failure::command_forgotten(&error).or_else(other) {

@@ -2,6 +2,8 @@
 
 use std::{fmt::Display, str::FromStr};
 
+use fuzzy::tree::{number_advice, share_of_percentage};
+
 /// Parses a whole number from `low` to `high`.
 pub(crate) fn whole<N>(low: N, high: N) -> impl Fn(&str) -> Result<N, String> + Clone + Send + Sync
 where
@@ -63,13 +65,7 @@ pub(crate) fn at_least_0(text: &str) -> Result<f64, String> {
 }
 
 fn fraction(text: &str, is_allowed: impl Fn(f64) -> bool, what: &str) -> Result<f64, String> {
-    let percent = text
-        .strip_suffix('%')
-        .and_then(|text| text.trim().parse::<f64>().ok());
-    match percent
-        .map(|percent| percent / 100.0)
-        .filter(|share| is_allowed(*share))
-    {
+    match share_of_percentage(text).filter(|share| is_allowed(*share)) {
         Some(share) => Err(format!("{what}: `{share}`")),
         None => real(text, is_allowed, what),
     }
@@ -82,26 +78,10 @@ fn real(text: &str, is_allowed: impl Fn(f64) -> bool, what: &str) -> Result<f64,
     let is_other_unit = ["%", "ms", "us", "min", "h"]
         .iter()
         .any(|unit| text.ends_with(unit));
-    number.ok_or_else(|| match advice(text).filter(|_| !is_other_unit) {
+    number.ok_or_else(|| match number_advice(text).filter(|_| !is_other_unit) {
         Some(advice) => format!("{what}; {advice}"),
         None => what.to_owned(),
     })
-}
-
-/// Advice for a number with a decimal comma, separators of thousands or a unit.
-pub(crate) fn advice(text: &str) -> Option<String> {
-    let joined = text.replace([',', '_', ' ', '\''], "");
-    if joined.contains('.') && joined != text && joined.parse::<f64>().is_ok() {
-        return Some(format!("write the number without separators: `{joined}`"));
-    }
-    let with_point = text.replacen(',', ".", 1);
-    if with_point != text && with_point.parse::<f64>().is_ok() {
-        return Some(format!("write a decimal point: `{with_point}`"));
-    }
-    let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.".contains(c)));
-    let number = text.get(..end?)?;
-    let is_number = number.parse::<f64>().is_ok();
-    is_number.then(|| format!("write the number without its unit: `{number}`"))
 }
 
 #[cfg(test)]

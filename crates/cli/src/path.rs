@@ -45,13 +45,22 @@ pub(crate) fn missing(shown: &str) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let same_stem = names
         .iter()
-        .find(|other| Path::new(other).file_stem() == Some(name.as_ref().as_ref()));
+        .filter(|other| Path::new(other).file_stem() == Some(name.as_ref().as_ref()))
+        .min_by_key(|other| {
+            RULES
+                .iter()
+                .position(|ending| has_ending(Path::new(other), &[ending]))
+                .unwrap_or(RULES.len())
+        });
     let near = || nearest(&name, names.iter().map(String::as_str));
     match same_stem.map(String::as_str).or_else(near) {
         Some(near) => format!("did you mean `{}`?", folder.join(near).display()),
-        None => "check the path".to_owned(),
+        None => CHECK.to_owned(),
     }
 }
+
+/// Advice for a file that does not exist and resembles no other.
+pub(crate) const CHECK: &str = "check the path";
 
 /// Whether a command has an option of this name.
 fn is_option(name: &str) -> bool {

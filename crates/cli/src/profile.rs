@@ -12,6 +12,7 @@ use fuzzy::{Diagnostic, Findings, Source};
 use crate::{
     diagnostics::{read_text, refuse, show},
     failure::Failure,
+    path::CHECK,
 };
 
 pub(crate) use flagred::loaded::{Loaded, examine};
@@ -76,8 +77,10 @@ fn read_profile(profile: &str, path: &Path) -> Result<String, Failure> {
 /// Reads a file whose name may be a misspelt name of a built-in profile.
 pub(crate) fn file_text(path: &Path) -> Result<String, Failure> {
     read_text(path).map_err(|failure| {
-        let names = shipped::profile_names().join(", ");
-        failure.help(format!("built-in profiles are {names}"))
+        failure.instead_of(CHECK, || {
+            let names = shipped::profile_names().join(", ");
+            format!("built-in profiles are {names}")
+        })
     })
 }
 

@@ -16,7 +16,7 @@ use fuzzy::{
 use crate::{
     failure::Failure,
     output::{self, Files, Output, Replace},
-    table::{self, Format, Table},
+    table::{self, Extent, Format, Table},
 };
 
 /// The arguments of a command that derives a rule set from another one.
@@ -108,6 +108,15 @@ impl OutputClaims {
         self.rising.is_empty() && self.falling.is_empty()
     }
 
+    /// Advice for several inputs in one option, `--rising temperature,humidity`.
+    pub(crate) fn joined(&self) -> Option<String> {
+        let mut options = [("--rising", &self.rising), ("--falling", &self.falling)].into_iter();
+        options.find_map(|(option, inputs)| {
+            let joined = inputs.iter().find(|input| input.contains(','))?;
+            Some(repeated(option, joined))
+        })
+    }
+
     /// Returns the claims; those about rising inputs come first.
     ///
     /// # Errors
@@ -153,7 +162,8 @@ impl OutputClaims {
             None => Ok(()),
             Some(input) => {
                 let failure = Failure::usage(format!("the rule set has no input `{input}`"));
-                Err(failure.help_if(fuzzy::diagnostic::suggest(input, names())))
+                let near = || fuzzy::diagnostic::suggest(input, names());
+                Err(failure.help_if(self.joined().or_else(near)))
             }
         }
     }
@@ -180,6 +190,17 @@ impl OutputClaims {
         }
         Ok(claims)
     }
+}
+
+/// Advice for several values in one option that may be repeated.
+pub(crate) fn repeated(option: &str, joined: &str) -> String {
+    let each = joined
+        .split(',')
+        .map(|one| format!("{option} {}", one.trim()));
+    format!(
+        "repeat the option: `{}`",
+        each.collect::<Vec<_>>().join(" ")
+    )
 }
 
 /// Returns the command-line word for a value.
@@ -209,6 +230,15 @@ pub(crate) fn read(arguments: &DerivationArguments, model: &Model) -> Result<Dat
         .collect();
     let tables = tables(&arguments.data, format);
     let mut data = columns(tables, format, &names, &labels, optional)?;
+    for (column, variable) in variables.iter().enumerate() {
+        let values = data
+            .rows
+            .iter()
+            .filter_map(|(row, _)| row.values.get(column));
+        if let Some(warning) = Extent::of(values.copied()).warning(variable) {
+            output::say(&warning);
+        }
+    }
     if arguments.clamp {
         clamp(&mut data, &variables);
     }
@@ -270,6 +300,7 @@ pub(crate) fn columns(
     labels: &[(String, f64)],
     [weight, group]: [Option<&str>; 2],
 ) -> Result<Data, Failure> {
+    let words = "name another column, or write numbers; for two classes write 0 and 1";
     let mut data = Data {
         rows: Vec::new(),
         refused: Vec::new(),
@@ -291,6 +322,7 @@ pub(crate) fn columns(
             let message = format!("column `{column}` is both an input and the output");
             return Err(Failure::usage(message).help("correct `--column`"));
         }
+        let kept = data.rows.len();
         for row in 0..table.len() {
             let mut bad = Vec::new();
             let mut number = |column: usize| {
@@ -331,6 +363,26 @@ pub(crate) fn columns(
                 group,
             };
             data.rows.push((row, place));
+        }
+        if data.rows.len() == kept {
+            let is_word = columns.last().is_some_and(|output| {
+                (0..table.len()).any(|row| {
+                    labels
+                        .iter()
+                        .any(|(label, _)| label == table.text(row, *output))
+                })
+            });
+            let columns = columns.iter().take(columns.len() - usize::from(is_word));
+            for column in columns {
+                table.has_numbers(*column, words)?;
+            }
+            if let Some(column) = weight {
+                let name = table.header.name(column);
+                let help = format!(
+                    "a weight is a number; to keep rows with the same `{name}` in one fold, write `--group-by {name}`"
+                );
+                table.has_numbers(column, &help)?;
+            }
         }
     }
     Ok(data)
@@ -386,23 +438,63 @@ pub(crate) fn in_columns(
     (data, refused)
 }
 
-/// Returns the failure for rows that cannot be used; `rows` is the number of all rows.
+/// Reports rows that cannot be used, of `rows` in all, as a failure. Rows with the same problem are summarised.
 pub(crate) fn refuse(refused: &[String], rows: usize, purpose: &str) -> Failure {
-    const SHOWN: usize = 20;
-    let mut shown: Vec<String> = refused.iter().take(SHOWN).cloned().collect();
-    let more = refused.len().saturating_sub(SHOWN);
-    shown.extend((more > 0).then(|| format!("and {more} more")));
+    const SHOWN: usize = 3;
+    const KINDS: usize = 5;
+    let mut kinds: Vec<(String, Vec<&String>)> = Vec::new();
+    for why in refused {
+        let kind = kind(why);
+        match kinds.iter_mut().find(|(other, _)| *other == kind) {
+            Some((_, same)) => same.push(why),
+            None => kinds.push((kind, vec![why])),
+        }
+    }
+    let mut details = Vec::new();
+    for (_, same) in kinds.iter().take(KINDS) {
+        details.extend(same.iter().take(SHOWN).map(|why| (*why).clone()));
+        let more = same.len().saturating_sub(SHOWN);
+        details.extend((more > 0).then(|| {
+            format!(
+                "and {more} more like {}",
+                if same.len() > 1 { "these" } else { "this" }
+            )
+        }));
+    }
+    let others = kinds.iter().skip(KINDS).map(|(_, same)| same.len());
+    let others: usize = others.sum();
+    details.extend((others > 0).then(|| format!("and {others} with other problems")));
     let count = refused.len();
     let outside = refused.iter().filter(|why| why.contains("outside")).count();
     let failure = Failure::unreadable(format!(
         "{count} row{} cannot be {purpose}, and nothing was written",
         if count == 1 { "" } else { "s" }
     ))
-    .details(shown);
-    match outside > 1 && 2 * outside > rows {
-        true => failure.help(format!(
+    .details(details);
+    if outside > 1 && 2 * outside > rows {
+        return failure.help(format!(
             "{outside} of {rows} rows are outside a range, so their unit is probably another one: convert the values, or correct the `range` in the rule set"
-        )),
-        false => failure.help("correct or remove these rows, leave them out with `--skip-bad-rows`, or clamp values outside a range with `--clamp`"),
+        ));
     }
+    let skip = (count < rows).then_some(", leave them out with `--skip-bad-rows`");
+    let clamp = (outside > 0).then_some(", clamp values outside a range with `--clamp`");
+    failure.help(format!(
+        "correct or remove these rows{}{}",
+        skip.unwrap_or_default(),
+        clamp.unwrap_or_default()
+    ))
+}
+
+/// Returns the problem of a row without its place and its values, except the name of the column.
+fn kind(why: &str) -> String {
+    let (_, problem) = why.split_once(", line ").unwrap_or(("", why));
+    let mut kind = String::new();
+    for (i, part) in problem.split('`').enumerate() {
+        if i % 2 == 0 {
+            kind.extend(part.chars().filter(|c| !c.is_ascii_digit()));
+        } else if kind.ends_with("column ") {
+            kind.push_str(part);
+        }
+    }
+    kind
 }

@@ -15,7 +15,7 @@ use crate::{
     failure::{Exit, Failure},
     numbers,
     output::{Files, Replace, Stdout},
-    provenance, rows, rule_set,
+    provenance, rows, rule_set, table,
 };
 
 #[derive(clap::Args)]
@@ -42,6 +42,8 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let rewrite = &arguments.rewrite;
+    let command = format!("simplify --output {}", rewrite.output.display());
+    table::rule_set_first(&command, &rewrite.model, &arguments.data)?;
     let mut files = Files::reading(arguments.data.iter().chain([&rewrite.model]))?;
     let output = files.output(&rewrite.output, Replace::forced(rewrite.force))?;
     let name = rewrite.model.display().to_string();

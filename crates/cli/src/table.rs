@@ -3,6 +3,7 @@
 mod cell;
 mod foreign;
 mod header;
+mod share;
 
 use std::{
     fs::File,
@@ -16,7 +17,9 @@ use std::{
 
 pub(crate) use cell::Cell;
 use foreign::not_a_table;
+use fuzzy::diagnostic::quoted;
 pub(crate) use header::Header;
+pub(crate) use share::Extent;
 
 use crate::{
     failure::{Failure, cannot_read},
@@ -97,7 +100,7 @@ pub(crate) struct Format {
     #[arg(long, value_name = "CHARACTER", default_value = ",", value_parser = delimiter)]
     pub(crate) delimiter: u8,
 
-    /// Skip rows that cannot be read
+    /// Skip rows that cannot be used
     #[arg(long)]
     pub(crate) skip_bad_rows: bool,
 }
@@ -136,7 +139,7 @@ pub(crate) fn rule_set_first(
 ) -> Result<(), Failure> {
     let Some(rules) = others
         .iter()
-        .find(|other| !is_table(other))
+        .find(|other| !is_table(other) && other.as_path() != Path::new("-"))
         .filter(|_| is_table(model))
     else {
         return Ok(());
@@ -274,7 +277,7 @@ impl Table {
                 return Err(Failure::unreadable(message).help("use fewer rows or columns"));
             }
             let line = record.position().map_or(0, csv::Position::line);
-            if let Some(misfit) = header.misfit(record.len()) {
+            if let Some(misfit) = header.misfit(record.len(), record.get(0).map(str::as_bytes)) {
                 return Err(
                     Failure::unreadable(format!("`{file}`, line {line}: {misfit}"))
                         .help(header.misfit_help()),
@@ -320,6 +323,20 @@ impl Table {
             }
             Cell::Unknown | Cell::Bad => Err(self.bad(row, column, Cell::problem(text))),
         }
+    }
+
+    /// Refuses a column without any number; `help` is for one that contains words.
+    pub(crate) fn has_numbers(&self, column: usize, help: &str) -> Result<(), Failure> {
+        let cell = |row| self.text(row, column);
+        let mut cells = (0..self.len()).map(|row| Cell::of(cell(row).as_bytes()));
+        if cells.any(|cell| matches!(cell, Cell::Number(_))) {
+            return Ok(());
+        }
+        let (file, name) = (&self.header.file, self.header.name(column));
+        let advice = fuzzy::tree::number_advice(cell(0));
+        let example = format!("line {}: `{}`", self.line(0), quoted(cell(0)));
+        let message = format!("column `{name}` of `{file}` contains no number ({example})");
+        Err(Failure::unreadable(message).help(advice.as_deref().unwrap_or(help)))
     }
 
     /// Returns the finite number in the column with the given name; `None` if there is no such

@@ -119,7 +119,7 @@ blocks: {only: {rules: [IF heat IS low THEN speed IS slow]}}
     );
     assert_eq!(code, Some(2), "{errors}");
     assert!(
-        errors.contains("learned rules have no rule blocks"),
+        errors.contains("the rule set has rule blocks, with which rules cannot be learned"),
         "{errors}"
     );
 }

@@ -58,6 +58,37 @@ fn files() -> tempfile::TempDir {
             "t_s,motor0,motor1,motor2,motor3\n0,0.5,0.5,0.5,0.5\n",
         ),
         ("fan_only.csv", "temperature,humidity,fans\n20,50,0\n"),
+        (
+            "german.csv",
+            "temperature;humidity;fan\n20;50;0,0\n25;60;9,5\n30;70;30,5\n",
+        ),
+        (
+            "places.csv",
+            "temperature,humidity,fan,vehicle\n20,50,0,a\n25,50,50,b\n30,70,70,b\n",
+        ),
+        (
+            "shares.csv",
+            "temperature,humidity,fan\n20,0.5,0\n25,0.6,50\n30,0.9,70\n40,1,100\n",
+        ),
+        (
+            "minus.csv",
+            "temperature,humidity\n\u{2212}12,5\n20,\"1.234,5\"\n20,50\n# end\n",
+        ),
+        (
+            "many.csv",
+            "temperature,humidity,fan\n20,50,0\n20,50,x\n20,50,y\n20,50,z\n20,50,u\n20,50,v\n20,,1\n",
+        ),
+        ("bare.csv", "pwm_low_us: 1000\nt_s,pwm1\n0,1500\n"),
+        (
+            "min.csv",
+            "# pwm_min_us: 1000\n# pwm_high_us: 2000\nt_s,pwm1\n0,1500\n",
+        ),
+        (
+            "hexa.csv",
+            "# frame: HEXA/X\nt_s,pwm1,pwm2,pwm3,pwm4\n0,1500,1500,1500,1500\n",
+        ),
+        ("copter.param", "MOT_PWM_MIN,1000\nMOT_PWM_MAX,2000\n"),
+        ("log.mat", "MATLAB 5.0 MAT-file"),
         ("constant.csv", "temperature,fan\n20,5\n30,5\n35,5\n"),
         (
             "fahrenheit.csv",
@@ -129,7 +160,7 @@ fn the_advice_for_mistakes_works() {
             (
                 "explain fan.yaml temperature=22% humidity=3",
                 2,
-                "write the number without its unit: `22`",
+                "write `22`, or `0.22` if the value is a share",
             ),
             (
                 "explain fan.yaml temperature=22",
@@ -253,12 +284,12 @@ fn the_advice_for_mistakes_works() {
             (
                 "tune fan.yaml units.csv -o out.yaml",
                 3,
-                "2 rows cannot be used",
+                "column `fan` of `units.csv` contains no number (line 2: `5 %`)",
             ),
             (
                 "tune fan.yaml units.csv -o out.yaml",
                 3,
-                "write `5`, without a unit",
+                "write `5`, or `0.05` if the value is a share",
             ),
             ("learn fan.yaml cells.csv -o out.yaml", 3, "write a point"),
             (
@@ -387,7 +418,7 @@ fn the_advice_for_mistakes_works() {
             (
                 "identify units.csv --target fan -o out.yaml",
                 3,
-                "write `5`, without a unit",
+                "write `5`, or `0.05` if the value is a share",
             ),
             (
                 "identify words.csv --target kind -o out.yaml",
@@ -400,6 +431,33 @@ fn the_advice_for_mistakes_works() {
 
 /// Mistakes of people who know other programs: the command line, the exit code, and a part of the message.
 const OF_OTHER_PROGRAMS: &[(&str, i32, &str)] = &[
+    (
+        "explain fan.yaml temperature=1 humidity=3 --json x.json",
+        2,
+        "`flagred explain fan.yaml temperature=1 humidity=3 --json --output x.json` writes this file",
+    ),
+    (
+        "tune fan.yaml rows.csv -o out.yaml --only fan.slow,fan.fast",
+        2,
+        "`--only fan.slow --only fan.fast`",
+    ),
+    (
+        "map fan.yaml --x temperature:0-20",
+        2,
+        "write `temperature:0..20`",
+    ),
+    (
+        "map fan.yaml --x temperature 0 20",
+        2,
+        "write `--x INPUT:LOW..HIGH`",
+    ),
+    ("plot fan.yaml --html x.html", 2, "write `--svg x.svg`"),
+    ("fmt fan.yaml --write", 2, "leave the option out"),
+    (
+        "check fan.yaml --coverage 50",
+        2,
+        "write a number above 0 and at most 1\n",
+    ),
     (
         "explain fan.yaml temperature 24 humidity 70",
         2,
@@ -553,7 +611,7 @@ const OF_OTHER_PROGRAMS: &[(&str, i32, &str)] = &[
     (
         "inspect flight.csv --csv",
         2,
-        "`--csv` is an option of `assess`",
+        "`flagred convert FLIGHT --output flight.csv`",
     ),
     ("convert flight.csv out.csv", 2, "write `--output out.csv`"),
     (
@@ -606,9 +664,9 @@ const OF_OTHER_PROGRAMS: &[(&str, i32, &str)] = &[
     ("map flight.csv", 3, "`flagred assess flight.csv`"),
     ("export --format fis fan.yaml", 2, "write `--fis`"),
     (
-        "export --fis fan.fis fan.yaml",
+        "export --fis new.fis fan.yaml",
         2,
-        "write `--fis fan.yaml --output fan.fis`",
+        "write `--fis fan.yaml --output new.fis`",
     ),
     ("export fan.yaml --matlab", 2, "write `--fis`"),
     (
@@ -738,6 +796,147 @@ const OF_OTHER_PROGRAMS: &[(&str, i32, &str)] = &[
     ),
     ("watch udp:14550", 2, "write `udpin:0.0.0.0:14550`"),
     ("show fan.yaml", 2, "`show` prints what is built in"),
+    (
+        "inspect --csv flight.csv",
+        2,
+        "`flagred convert FLIGHT --output flight.csv` writes a table",
+    ),
+    ("check --csv fan.yaml", 2, "write `--json`"),
+    ("validate --csv flight.csv", 2, "write `--json`"),
+    (
+        "assess flight.csv --csv out.csv",
+        2,
+        "`flagred assess flight.csv --csv > out.csv` writes this file",
+    ),
+    ("map fan.yaml --csv out.csv", 2, "write `--output out.csv`"),
+    (
+        "check fan.yaml --json out.json",
+        2,
+        "`flagred check fan.yaml --json > out.json` writes this file",
+    ),
+    (
+        "plot fan.yaml --png terms.png",
+        2,
+        "write `--svg terms.svg`",
+    ),
+    (
+        "map fan.yaml --hold temperature 5",
+        2,
+        "write `--hold temperature=5`",
+    ),
+    (
+        "map fan.yaml --hold temperature=5,5",
+        2,
+        "write a decimal point: `5.5`",
+    ),
+    (
+        "map fan.yaml --hold temperature=5,humidity=3",
+        2,
+        "`--hold temperature=5 --hold humidity=3`",
+    ),
+    (
+        "map fan.yaml --x temperature,humidity",
+        2,
+        "write `--x temperature --y humidity`",
+    ),
+    ("map --json fan.yaml", 2, "write `--csv`"),
+    (
+        "map fan.yaml --check earlier.csv",
+        3,
+        "`flagred map fan.yaml --csv --output earlier.csv` writes it",
+    ),
+    (
+        "eval --json fan.yaml rows.csv",
+        2,
+        "the table is CSV: leave the option out",
+    ),
+    (
+        "eval fan.yaml minus.csv",
+        1,
+        "this dash is not a minus sign: write `-12`",
+    ),
+    (
+        "eval fan.yaml minus.csv",
+        1,
+        "write the number without separators: `1234.5`",
+    ),
+    (
+        "eval fan.yaml minus.csv",
+        1,
+        "line 5: comments are allowed only above the header",
+    ),
+    (
+        "eval fan.yaml shares.csv --suffix _model",
+        0,
+        "warning: all 4 values of `humidity` are from 0.5 to 1, but its range is 0 to 100",
+    ),
+    (
+        "learn fan.yaml shares.csv -o shares.yaml",
+        0,
+        "is the column a share instead of a percentage?",
+    ),
+    (
+        "learn fan.yaml german.csv --delimiter ; -o out.yaml",
+        3,
+        "column `fan` of `german.csv` contains no number (line 2: `0,0`)\n  help: write a decimal point: `0.0`",
+    ),
+    (
+        "learn fan.yaml many.csv -o out.yaml",
+        3,
+        "and 2 more like these",
+    ),
+    (
+        "tune fan.yaml places.csv --weight vehicle -o out.yaml",
+        3,
+        "write `--group-by vehicle`",
+    ),
+    (
+        "tune fan.yaml places.csv --loss log -o out.yaml",
+        3,
+        "the values of `fan` are from 0 to 70, but `--loss log` is for outcomes of 0 and 1",
+    ),
+    (
+        "check fan.yaml --rising temperature,humidity",
+        2,
+        "`--rising temperature --rising humidity`",
+    ),
+    ("watch udpin:0.0.0.0:14559 --json", 2, "write `--jsonl`"),
+    (
+        "export rust fan.yaml",
+        2,
+        "an option begins with dashes: write `--rust`",
+    ),
+    (
+        "export --fis -o built-in.fis",
+        0,
+        "wrote `built-in.fis`: the built-in rule set `flagred`",
+    ),
+    ("completions", 2, "bash, elvish, fish, powershell"),
+    (
+        "assess --profile profle.yaml flight.csv",
+        3,
+        "did you mean `profile.yaml`?",
+    ),
+    ("assess bare.csv", 3, "write `# pwm_low_us: 1000`"),
+    (
+        "assess min.csv",
+        3,
+        "write `pwm_low_us` in place of `pwm_min_us` in line 1",
+    ),
+    (
+        "assess hexa.csv",
+        3,
+        "add the columns that are missing, or correct `frame`",
+    ),
+    ("assess copter.param", 3, "is a list of parameters"),
+    ("assess log.mat", 3, "name the .bin or .ulg log"),
+    ("assess .", 3, "`.` is a folder"),
+    (
+        "simplify rows.csv fan.yaml -o out.yaml",
+        2,
+        "flagred simplify --output out.yaml fan.yaml rows.csv",
+    ),
+    ("convert fan.fis -o fan.csv", 3, "is a rule set"),
 ];
 
 #[test]
@@ -746,6 +945,47 @@ fn words_of_other_programs_are_translated() {
     let (_, fis, _) = flagred(folder.path(), &["export", "--fis", "fan.yaml"]);
     std::fs::write(folder.path().join("fan.fis"), fis).unwrap();
     assert_advice(&folder, OF_OTHER_PROGRAMS);
+}
+
+#[test]
+fn no_tip_writes_to_a_file_that_exists() {
+    let folder = files();
+    let commands = [
+        "inspect", "check", "validate", "assess", "convert", "eval", "map", "plot", "explain",
+        "export", "dataset", "identify", "fmt", "import", "show", "studio", "watch",
+    ];
+    let options = [
+        "--csv",
+        "--json",
+        "--html",
+        "--png",
+        "--out",
+        "-o",
+        "--output",
+        "--save",
+        "--format",
+        "--report",
+        "--svg",
+        "--pdf",
+        "--write",
+        "--outfile",
+    ];
+    for command in commands {
+        for option in options {
+            let words = [command, option, "fan.yaml"];
+            let (_, _, errors) = flagred(folder.path(), &words);
+            let tip = errors.lines().filter(|line| line.contains("tip:"));
+            for tip in tip {
+                let writes = ["> fan", "--output fan", "--svg fan", "--html fan"];
+                assert!(
+                    !writes.iter().any(|write| tip.contains(write)),
+                    "{words:?}: {tip}"
+                );
+            }
+            let text = std::fs::read_to_string(folder.path().join("fan.yaml")).unwrap();
+            assert_eq!(text, FAN, "{words:?}");
+        }
+    }
 }
 
 #[test]

@@ -106,7 +106,7 @@ fn rows_that_do_not_fit_the_loss_are_refused() {
     assert_eq!((code, written), (Some(3), None));
     assert!(
         err.contains(
-            "`rows.csv`, line 2: the output's value is 2, but must be 0 or 1 for this loss"
+            "the values of `speed` are from 2 to 8, but `--loss log` is for outcomes of 0 and 1"
         ),
         "{err}"
     );

@@ -86,7 +86,7 @@ impl Baseline {
             ),
             of(
                 "saturated_share",
-                "share of motors and of 5 s at a command limit",
+                "share of all motor commands over 5 s that are at a limit",
                 of_motors(
                     Statistic::ShareBelow(0.006),
                     Motors::Pooled,
@@ -114,7 +114,7 @@ impl Baseline {
             },
             of(
                 "full_share",
-                "share of motors and of 2 s with a command over 0.98",
+                "share of all motor commands over 2 s that are above 0.98",
                 of_each(Statistic::ShareAbove(0.98), Signal::MotorCommand),
                 true,
             ),

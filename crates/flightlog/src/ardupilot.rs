@@ -36,7 +36,7 @@ pub(crate) fn motors(
     if !has_functions(parameters) {
         let known_by = match &vehicle.frame {
             Some(frame) => format!("frame {frame}"),
-            None => "the first outputs, which move together".into(),
+            None => "the first outputs whose commands move together".into(),
         };
         let source = format!("{known_by} (the log has no SERVOn_FUNCTION)");
         return match vehicle.motors.unwrap_or(0) {
@@ -107,7 +107,7 @@ pub(crate) fn air_from_commands(
         known.iter().sum::<f64>() > 0.2 * known.len() as f64 || before && known.len() < row.len()
     };
     let mut intervals = |state: &dyn Fn(&[f64], bool) -> bool, rule: &str| {
-        let rule = format!("{rule} (the log has no events for it)");
+        let rule = format!("{rule} (the log contains no events for this state)");
         let mut changes: Vec<(f64, bool)> = Vec::new();
         let (mut last, mut end_s) = (None, None);
         for (t_s, row) in flight.commands.rows() {
@@ -257,7 +257,11 @@ pub(crate) fn effective_range(parameters: &Parameters) -> Range {
     };
     match FRACTIONS.allow((low, high)) {
         true => range(low, high, source.into()),
-        false => range(low, 1.0, format!("THR_MIN; {source} is not a limit")),
+        false => range(
+            low,
+            1.0,
+            format!("THR_MIN; the values of {source} are not valid limits"),
+        ),
     }
 }
 

@@ -114,10 +114,10 @@ impl Gap {
     pub fn help(&self) -> Option<&'static str> {
         use Format::{Csv, DataFlash, DataFlashText, Tlog, ULog};
         Some(match self {
-            Self::NotAMultirotor { .. }
-            | Self::MotorsMissing { .. }
-            | Self::NoCommandsInAir
-            | Self::NeverArmed => return None,
+            Self::NotAMultirotor { .. } | Self::NoCommandsInAir | Self::NeverArmed => return None,
+            Self::MotorsMissing { .. } => {
+                "log the outputs of all motors; in a flight CSV add the columns that are missing, or correct `frame` or `motors`"
+            }
             Self::NeverInAir { format } => match format {
                 Csv => {
                     "column `in_air` is 0 in every row: write 1 in the air, or leave the column out if every row counts"

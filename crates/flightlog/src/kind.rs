@@ -91,7 +91,7 @@ const SIGNATURES: &[(&[u8], &[u8], &str, &str)] = &[
 const WEB_PAGE: &str = "a web page";
 const POINTER: &str = "a git-lfs pointer";
 const MAT: &str = "a MAT or HDF5 file";
-const MAT_HELP: &str = "in MATLAB, write a fuzzy system by `writeFIS`, a table by `writetable`";
+const MAT_HELP: &str = "name the .bin or .ulg log that it was made from; in MATLAB, write a fuzzy system by `writeFIS`, a table by `writetable`";
 
 /// Kinds that are recognised without a signature.
 const OTHERS: &[FileKind] = &[
@@ -102,6 +102,7 @@ const OTHERS: &[FileKind] = &[
     FileKind::PROFILE,
     FileKind::SEMICOLONS,
     FileKind::TABS,
+    FileKind::PARAMETERS,
     FileKind::UTF_16,
 ];
 
@@ -137,6 +138,10 @@ impl FileKind {
         name: "a table with tabs between its cells",
         help: Some(COMMAS),
     };
+    pub(crate) const PARAMETERS: FileKind = FileKind {
+        name: "a list of parameters",
+        help: Some("name the log of a flight, which contains the parameters"),
+    };
     const UTF_16: FileKind = FileKind {
         name: "text in UTF-16",
         help: Some("save it as UTF-8"),
@@ -149,6 +154,7 @@ impl FileKind {
         FileKind::PROFILE,
         FileKind::SEMICOLONS,
         FileKind::TABS,
+        FileKind::PARAMETERS,
     ];
 
     /// Whether the content is text.
@@ -180,6 +186,22 @@ pub(crate) fn signed(start: &[u8]) -> Option<FileKind> {
     found.map(kind)
 }
 
+/// Whether a text lists parameters: each line has one name in capitals, and numbers.
+pub(crate) fn is_parameters(start: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(&start[..start.len().min(1024)]);
+    let lines = text.lines().map(str::trim);
+    let mut lines = lines.filter(|line| !line.is_empty() && !line.starts_with('#'));
+    let is_entry = |line: &str| {
+        let cells = line.split([',', '\t', ' ']).filter(|cell| !cell.is_empty());
+        let (numbers, names): (Vec<&str>, Vec<&str>) =
+            cells.partition(|cell| cell.parse::<f64>().is_ok());
+        let is_name = |c: char| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_';
+        matches!(names[..], [name] if name.len() > 2 && name.chars().all(is_name))
+            && !numbers.is_empty()
+    };
+    lines.next().is_some_and(is_entry) && lines.take(2).all(is_entry)
+}
+
 /// The kind of a file that is not a log and has no signature.
 pub(crate) fn of_rest(start: &[u8]) -> FileKind {
     let start = &start[..start.len().min(1024)];
@@ -195,10 +217,17 @@ pub(crate) fn of_rest(start: &[u8]) -> FileKind {
     }
     let text = String::from_utf8_lossy(start);
     let starts = |key: &str| text.lines().any(|line| line.starts_with(key));
+    let of_others = [
+        "[System]",
+        "Engine:",
+        "FUNCTION_BLOCK",
+        "<fuzzySystem",
+        "<FuzzyController",
+    ];
     let header = text.lines().find(|line| !line.starts_with('#'));
     let separates =
         |sign: char| header.is_some_and(|header| header.contains(sign) && !header.contains(','));
-    if starts("fuzzy:") {
+    if starts("fuzzy:") || of_others.into_iter().any(starts) {
         FileKind::RULES
     } else if starts("flagred:") {
         FileKind::PROFILE

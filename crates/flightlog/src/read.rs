@@ -212,6 +212,9 @@ fn sniff(start: &[u8]) -> Content {
     if dataflash::text::looks_like(start) {
         return Content::DataFlashText;
     }
+    if kind::is_parameters(start) {
+        return Content::Other(FileKind::PARAMETERS);
+    }
     if csv::looks_like(start) {
         return Content::Csv;
     }

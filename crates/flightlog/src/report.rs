@@ -64,7 +64,7 @@ impl fmt::Display for LeftOutCounts {
             (self.modes, "flight modes"),
             (self.parameters, "values of parameters"),
             (self.changes, "changes of the armed or in-air state"),
-            (self.messages, "messages after the flight that is kept"),
+            (self.messages, "messages after the flight that was read"),
         ];
         let counts = counts.iter().filter(|(count, _)| *count > 0);
         for (i, (count, what)) in counts.enumerate() {

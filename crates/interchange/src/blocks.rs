@@ -58,7 +58,7 @@ pub(crate) fn joined(draft: &mut ModelDraft<'_>, output: &str, part: &str, help:
         .any(|pair| matches!(pair, [a, b] if a == b))
     {
         let message = format!(
-            "several rules conclude the same term of `{output}`, and its aggregation joins them"
+            "several rules conclude the same term of `{output}`, and the aggregation of the file combines them, but a rule set weights each rule separately"
         );
         draft.loss("joined", part, message, help);
     }

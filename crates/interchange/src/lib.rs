@@ -209,12 +209,19 @@ pub fn write(model: &Model, format: Format, losses: Losses) -> Result<WriteResul
     }?;
     written.findings.0.extend(crisp::written(model));
     let again = read(&written.text, format, losses);
-    match again.and_then(|document| document.validate(&written.text)) {
-        Ok(()) => Ok(written),
+    let again = again.and_then(|document| document.validate(&written.text).map(|()| document));
+    match again {
+        Ok(document) => match without_rules(model, &document.model) {
+            None => Ok(written),
+            Some(lost) => {
+                written.findings.0.push(lost);
+                Err(written.findings)
+            }
+        },
         Err(Findings(unreadable)) => {
             let what = unreadable.first().map_or("", |finding| &finding.message);
             let message = format!(
-                "the part of it that {} can express is not a rule set: {what}",
+                "without the parts that {} cannot express, the rule set is not valid: {what}",
                 format.name()
             );
             let finding = Diagnostic::error("unreadable", 0..0, message);
@@ -225,6 +232,26 @@ pub fn write(model: &Model, format: Format, losses: Losses) -> Result<WriteResul
             Err(findings)
         }
     }
+}
+
+/// Returns an error for an output whose rules were all left out.
+fn without_rules(model: &Model, written: &Model) -> Option<Diagnostic> {
+    let concluded = |model: &Model, output: usize| {
+        let name = model
+            .outputs
+            .get(output)
+            .map(|output| &output.variable.name);
+        let consequents = model.rules.iter().flat_map(|rule| &rule.rule.consequents);
+        consequents
+            .map(|one| &one.output.text)
+            .any(|it| Some(it) == name)
+    };
+    let is_lost = |output: &usize| concluded(model, *output) && !concluded(written, *output);
+    let lost = (0..model.outputs.len()).find(is_lost)?;
+    let name = &model.outputs.get(lost)?.variable.name;
+    let message = format!("all rules of the output `{name}` would be left out");
+    let help = "write a rule set for each output, with the rules that the format can express";
+    Some(Diagnostic::error("no-rules", 0..0, message).help(help))
 }
 
 /// Runs the example of the README.

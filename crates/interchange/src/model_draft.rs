@@ -155,8 +155,7 @@ impl<'t> ModelDraft<'t> {
             return (low, high);
         }
         let message = format!("the range from {low} to {high} is empty");
-        let help =
-            "the values of the output are computed, so its range only needs a width; it becomes 1";
+        let help = "the values of this output do not depend on its range, which only needs a width: it becomes 1";
         self.note("empty-range", part, message, help);
         (low - 0.5, high + 0.5)
     }

@@ -76,6 +76,15 @@ impl TextDraft {
         self.findings.push(finding.help(help));
     }
 
+    /// Reports a rule that the format cannot represent: if losses are accepted, it is left out.
+    pub(crate) fn leave_out(&mut self, rule: usize, what: &str, help: &str) {
+        let message = match self.losses {
+            Losses::Refuse => format!("rule {rule} {what}"),
+            Losses::Accept => format!("rule {rule} is left out: it {what}"),
+        };
+        self.loss("rule", message, help);
+    }
+
     /// Reports missing content without which the rest is useless, such as a term that rules refer to: an error even if
     /// losses are accepted.
     pub(crate) fn refuse(&mut self, code: &'static str, message: String, help: &str) {

@@ -179,9 +179,9 @@ fn figures(subject: &Subject, estimator: &Estimator) -> Markup {
                 (of_air(summary.filled_s)) "."
                 @if has_motors { " Motors were at a limit for " (share(summary.saturated_share)) " of it." }
                 @if has_motors {
-                    " Mean and elevated risk are without the seconds around take-off and landing."
+                    " The seconds around take-off and landing are left out of the mean and elevated risk."
                 } @else {
-                    " Mean and elevated risk are without the first seconds in use and the last ones before a stop."
+                    " The first seconds in use and the last ones before a stop are left out of the mean and elevated risk."
                 }
                 " Times are minutes since " (if has_motors { "take-off" } else { "the start of use" })
                 ", which was at " (Clock::Log.at(subject.stretch().start_s)) " on the log's clock."

@@ -73,7 +73,7 @@ pub(crate) fn folded(flight: &Flight, estimator: &Estimator, timeline: &Timeline
     html! {
         @if !curves.is_empty() {
             h2 { "Signals of the log" }
-            p.soft { "Open some to see them with the cursor of the other curves." }
+            p.soft { "Open a signal to see its curve; all curves share one cursor." }
             @for one in &curves {
                 details.signal {
                     summary { (one.title) }

@@ -118,7 +118,7 @@ pub fn write(
         let others: Vec<_> = others.map(|risk| visible(&risk.output)).collect();
         match others.is_empty() {
             true => writeln!(out, "risk over time")?,
-            false => writeln!(out, "risk over time, without {}", others.join(" and "))?,
+            false => writeln!(out, "risk over time (not shown: {})", others.join(" and "))?,
         }
         writeln!(out, "{}", over_time_text(&points, PICTURE_COLUMNS))?;
     }

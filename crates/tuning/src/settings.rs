@@ -117,7 +117,7 @@ pub enum TuneError {
         name: String,
     },
     /// No parameter may change: all are fixed, or the model has none.
-    #[error("no number is allowed to change")]
+    #[error("nothing can be tuned: every number is fixed")]
     NothingMoves,
     /// No input reduces the cross-validation error.
     #[error("no input predicts the output better than its mean")]

@@ -116,13 +116,13 @@ pub enum SetupError {
 impl core::fmt::Display for SetupError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
-            SetupError::Memory => f.write_str("the memory does not have the sizes of the plan"),
+            SetupError::Memory => f.write_str("the memory has other sizes than the plan requires"),
             SetupError::NoMotors => {
                 f.write_str("the profile reads a motor that the vehicle does not have")
             }
             SetupError::Plan(damaged) => damaged.fmt(f),
             SetupError::Geometry => f.write_str(
-                "the geometry does not distinguish roll, pitch, yaw and thrust of the motors",
+                "the factors of the motors do not separate roll, pitch, yaw and thrust, or a motor has none",
             ),
         }
     }

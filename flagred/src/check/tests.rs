@@ -257,3 +257,54 @@ fn a_level_of_another_risk_without_elevated_risk_is_reported() {
     assert_eq!(warnings(with, "{}"), [""; 0]);
     assert_eq!(warnings("{risk: 60}", "{warn: {risk: 61}}"), [""; 0]);
 }
+
+#[test]
+fn numbers_of_statistics_in_another_unit_are_reported() {
+    let of = |source: &str| found("mean: motor_margin", source).join("");
+    for (source, message) in [
+        (
+            "share_below: 6, of: motor_margin",
+            "`motor_margin` is from 0 to 0.5, so it is always below 6",
+        ),
+        (
+            "share_above: 95, of: motor_command",
+            "`motor_command` is from 0 to 1, so it is never above 95",
+        ),
+        (
+            "share_below: 0, of: motor_margin",
+            "`motor_margin` is from 0 to 0.5, so it is never below 0",
+        ),
+        (
+            "share_below: 0.2, of: battery_remaining_pct",
+            "`battery_remaining_pct` is in percent, and 0.2 is a share",
+        ),
+        (
+            "percentile: 0.9, of: battery_v",
+            "`percentile` is in percent, and 0.9 is a share",
+        ),
+    ] {
+        let found = of(source);
+        assert!(found.contains(message), "{source}: {found}");
+    }
+    for (source, help) in [
+        ("share_below: 6, of: motor_margin", "`share_below: 0.06`"),
+        ("share_above: 95, of: motor_command", "`share_above: 0.95`"),
+        ("percentile: 0.9, of: battery_v", "`percentile: 90`"),
+        (
+            "percentile: 0.9, of: motor_margin",
+            "`{percentile: 90, of: {mean: motor_margin}}`",
+        ),
+    ] {
+        let found = of(source);
+        assert!(found.contains(help), "{source}: {found}");
+    }
+    for source in [
+        "share_below: 0.06, of: motor_margin",
+        "share_above: 0.95, of: motor_command",
+        "share_above: 3.5, of: battery_v",
+        "share_below: 20, of: battery_remaining_pct",
+        "percentile: 90, of: battery_v",
+    ] {
+        assert_eq!(of(source), "", "{source}");
+    }
+}

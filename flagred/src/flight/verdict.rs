@@ -111,7 +111,7 @@ pub enum Reason {
     /// The whole flight is within the seconds after take-off and before landing that are not
     /// judged.
     #[error(
-        "{in_air_s:.1} s in the air are too short: the first {quiet_s} s and the end of a flight are not judged"
+        "the flight is too short, {in_air_s:.1} s in the air: the first {quiet_s} s and the end of a flight are not judged"
     )]
     TooShort {
         /// The time in the air, in seconds.
@@ -202,7 +202,7 @@ impl Reason {
                 Some("the log on board shows how the flight ended: `flagred assess`")
             }
             Reason::SetBackInAir { .. } => Some(
-                "what came after is missing or uncertain: look for a restart of the autopilot, or for a damaged clock",
+                "the data after this time are missing or uncertain: look for a restart of the autopilot, or for a damaged clock",
             ),
             Reason::SamplesIgnored { .. } => {
                 Some("give each sample a later time than the previous one, in seconds")

@@ -106,7 +106,7 @@ fn read(tree: &Node, found: &mut Found) -> Option<Profile> {
                 .help("write `flagred: 1`, or use a newer version of flagred"),
         );
     }
-    for key in ["warn", "fail", "thresholds"] {
+    for key in ["warn", "fail", "thresholds", "levels", "limits"] {
         if let Some(entry) = fields.unknown().find(|entry| entry.key == key)
             && let Some(finding) = found.iter_mut().find(|one| one.span == entry.key_span)
         {

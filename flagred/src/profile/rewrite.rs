@@ -210,7 +210,7 @@ mod tests {
         wanted.warn.raise.risk_pct = Some(10.0);
         let refused = Profile::rewritten(text, &wanted).unwrap_err().to_string();
         assert!(
-            refused.contains("held until 43, which is above 10"),
+            refused.contains("is 43, above 10, at which the level is raised"),
             "{refused}"
         );
         assert!(Profile::rewritten("name: x", &verdict(text)).is_err());

@@ -5,6 +5,7 @@ use alloc::{format, string::String, vec::Vec};
 
 use super::{findings::ModelPositions, shown};
 use crate::{
+    Engine,
     diagnostic::Diagnostic,
     model::{Formula, MembershipFunction, Model, Term, Variable},
     rule::Hedge,
@@ -22,8 +23,14 @@ const STEPS: u32 = 200;
 /// If a term has its largest degree on at least this share of the range, the other terms of the input are too narrow.
 const NEARLY_ALL: f64 = 0.98;
 
-/// Adds the findings, in the order of the model's parts.
-pub(super) fn of(model: &Model, at: &ModelPositions<'_>, found: &mut Vec<Diagnostic>) {
+/// Adds the findings, in the order of the model's parts. Returns the outputs that have no value at some inputs because of
+/// a formula.
+pub(super) fn of(
+    model: &Model,
+    at: &ModelPositions<'_>,
+    found: &mut Vec<Diagnostic>,
+) -> Vec<String> {
+    let mut without = Vec::new();
     for input in &model.inputs {
         constants(input, at, found);
     }
@@ -37,11 +44,12 @@ pub(super) fn of(model: &Model, at: &ModelPositions<'_>, found: &mut Vec<Diagnos
         for term in &output.variable.terms {
             if let MembershipFunction::Function { formula } = &term.membership_function
                 && output.defuzzifier.takes_numbers()
-                && !has_a_value(model, formula)
+                && let Some(place) = without_value(model, name, term, formula)
             {
+                without.push(name.clone());
                 let term = &term.name;
                 let message = format!(
-                    "the formula of term `{term}` of output `{name}` has no finite value at any of the inputs tried"
+                    "the formula of term `{term}` of output `{name}` has no finite value at {place}"
                 );
                 let help =
                     "division by 0, and roots and logarithms of negative numbers, have no value";
@@ -69,6 +77,7 @@ pub(super) fn of(model: &Model, at: &ModelPositions<'_>, found: &mut Vec<Diagnos
             }
         });
     }
+    without
 }
 
 /// The degrees of a term at evenly spaced values of its variable.
@@ -182,6 +191,82 @@ fn constant(input: &Variable, one: &Degrees<'_>, all: &[Degrees<'_>]) -> Option<
 /// Rounds a degree to two decimal places.
 fn rounded(degree: f64) -> f64 {
     libm::round(100.0 * degree) / 100.0
+}
+
+/// Returns where the formula of a term has no finite value although a rule that concludes the term fires, if there is such
+/// a place. The ends of the ranges, where most formulas have their poles, are tried.
+fn without_value(model: &Model, output: &str, term: &Term, formula: &Formula) -> Option<String> {
+    const MOST_POINTS: usize = 3000;
+    if !has_a_value(model, formula) {
+        return Some("any of the inputs tried".into());
+    }
+    let is_read = |input: &Variable| formula.places().any(|(name, _)| name == input.name);
+    let mut points: Vec<Vec<f64>> = Vec::from([Vec::new()]);
+    for input in &model.inputs {
+        let middle = input.low / 2.0 + input.high / 2.0;
+        let zero = (input.low < 0.0 && input.high > 0.0).then_some(0.0);
+        let tried = [Some(middle), Some(input.low), Some(input.high), zero];
+        let tried = tried.into_iter().flatten();
+        let count = match points.len() * 4 > MOST_POINTS && !is_read(input) {
+            true => 1,
+            false => 4,
+        };
+        let tried: Vec<f64> = tried.take(count).collect();
+        let longer = points.iter().flat_map(|point| {
+            tried
+                .iter()
+                .map(move |value| point.iter().copied().chain([*value]).collect())
+        });
+        points = longer.take(MOST_POINTS).collect();
+    }
+    let value_of = |point: &[f64], name: &str| {
+        let mut inputs = model.inputs.iter().zip(point);
+        let found = inputs.find(|(input, _)| input.name == name);
+        // The value of an output is not known.
+        found.map(|(_, value)| *value)
+    };
+    points.retain(|point| {
+        let is_known = |(name, _): (&str, _)| value_of(point, name).is_some();
+        let value = |name: &str| value_of(point, name).unwrap_or(f64::NAN);
+        formula.places().all(is_known) && !formula.evaluate(value).is_finite()
+    });
+    let index = model
+        .outputs
+        .iter()
+        .position(|it| it.variable.name == output)?;
+    // With a number in place of the formula, the output has a value if the rule fires.
+    let mut other = model.clone();
+    let terms = other
+        .outputs
+        .get_mut(index)
+        .map(|output| &mut output.variable.terms);
+    let one = terms
+        .into_iter()
+        .flatten()
+        .find(|one| one.name == term.name)?;
+    one.membership_function = MembershipFunction::Constant { value: 1.0 };
+    let engines = (!points.is_empty()).then(|| (Engine::new(model), Engine::new(&other)));
+    let Some((Ok(engine), Ok(other))) = engines else {
+        return None;
+    };
+    let has_value = |engine: &Engine, point: &[f64]| {
+        let outcomes = engine.evaluate(point).ok();
+        outcomes
+            .and_then(|outcomes| outcomes.get(index)?.value())
+            .is_some()
+    };
+    let point = points
+        .iter()
+        .find(|point| !has_value(&engine, point) && has_value(&other, point))?;
+    let values = model
+        .inputs
+        .iter()
+        .zip(point)
+        .filter(|(input, _)| is_read(input));
+    let values: Vec<String> = values
+        .map(|(input, value)| format!("{} = {}", input.name, shown(*value)))
+        .collect();
+    Some(values.join(", "))
 }
 
 /// Returns whether a formula has a finite value at any of many points that are spread over the ranges of the variables.

@@ -43,11 +43,12 @@ pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnosti
     } else if model.negates_type2() {
         let message =
             "regions without a rule were not searched for, because NOT is applied to a type-2 term";
-        let help = "write the rules without NOT, with a term for the opposite, to examine them";
+        let help =
+            "to have them searched, write the rules without NOT, with a term for the opposite";
         let place = spans.rules_key.clone();
         found.push(Diagnostic::note("examined-in-part", place, message).help(help));
     } else if !report.uncovered_complete {
-        let message = "regions without a rule were searched for in a part of the input space only";
+        let message = "only a part of the input space was searched for regions without a rule";
         found.push(
             Diagnostic::note("examined-in-part", spans.rules_key.clone(), message)
                 .help("there are too many rules, terms or outputs to search it all"),
@@ -112,7 +113,12 @@ pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnosti
             .map(|one| at.counterexample(one)),
     );
     found.extend(report.jumps.iter().map(|one| at.jump(one)));
-    effects::of(model, &at, &mut found);
+    let without_value = effects::of(model, &at, &mut found);
+    // Near a pole, an output takes values that were not evaluated.
+    found.retain(|finding| {
+        let is_about = |name: &String| finding.message.starts_with(&format!("`{name}` "));
+        finding.code != "narrow-reach" || !without_value.iter().any(is_about)
+    });
     found.extend(at.unexamined(report));
     found
 }
@@ -299,7 +305,7 @@ impl ModelPositions<'_> {
         let message =
             format!("{least}{more} more regions have no rule; only the largest are listed");
         Diagnostic::warning("uncovered", self.spans.rules_key.clone(), message)
-            .help("add the missing rules above first")
+            .help("first add the rules that the other findings name")
     }
 
     fn unused(&self, one: &TermOf) -> Diagnostic {

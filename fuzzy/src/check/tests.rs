@@ -509,7 +509,7 @@ fn parts_without_an_effect_or_a_value_are_found() {
         ),
         (
             shoulder,
-            "terms: {slow: {constant: 0}, fast: {function: sqrt(x - 99)}}, defuzzifier: weighted_average",
+            "terms: {slow: {constant: 0}, fast: {function: sqrt(x)}}, defuzzifier: weighted_average",
         ),
     ] {
         assert_eq!(found(term, output, none), "", "{term} {output}");
@@ -669,4 +669,39 @@ allow: [{finding: jump, because: limits of the regulation}]";
     let told: Vec<_> = report_of(&missing, &Options::default()).1;
     let told: Vec<String> = told.iter().map(|one| one.to_string()).collect();
     insta::assert_snapshot!(told.join("\n"));
+}
+
+#[test]
+fn formulas_are_evaluated_at_the_ends_of_ranges() {
+    let of = |formula: &str| {
+        let text = format!(
+            "fuzzy: 1
+name: poles
+inputs: {{x: {{range: [0, 2], partition: [low, high]}}, y: {{range: [-1, 1], partition: [low, high]}}}}
+outputs: {{z: {{range: [0, 90], terms: {{a: {{function: '{formula}'}}, b: {{constant: 0}}}}, defuzzifier: weighted_average}}}}
+rules: [IF x IS low THEN z IS a, IF x IS high THEN z IS b]"
+        );
+        let document = crate::yaml::parse(&text).unwrap();
+        let engine = Engine::new(&document.model).unwrap();
+        let report = check(&engine, &Options::default()).unwrap();
+        let findings = report.findings(&document.model, &document.spans);
+        let codes = ["no-value", "narrow-reach"];
+        let found = findings.iter().filter(|one| codes.contains(&one.code));
+        found.map(|one| one.message.clone()).collect::<Vec<_>>()
+    };
+    let at = |place: &str| {
+        [format!(
+            "the formula of term `a` of output `z` has no finite value at {place}"
+        )]
+    };
+    assert_eq!(of("1 / x"), at("x = 0"));
+    assert_eq!(of("-10 * log(x)"), at("x = 0"));
+    assert_eq!(of("1 / (1 + y)"), at("y = -1"));
+    assert_eq!(of("x / y"), at("x = 1, y = 0"));
+    // No rule for `a` fires there.
+    assert!(
+        !of("1 / (2 - x)")
+            .iter()
+            .any(|found| found.contains("no finite value"))
+    );
 }

@@ -67,7 +67,7 @@ pub fn rules_text(
     model: &Model,
     paint: impl Fn(char, Option<Colour>) -> String,
 ) -> String {
-    let mut text = heading(slice, ", dominating rule");
+    let mut text = heading(slice, ", dominant rule");
     let mut seen: Vec<usize> = Vec::new();
     picture(&mut text, slice, |cell| {
         let Some(rule) = cell.rule else {

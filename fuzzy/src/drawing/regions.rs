@@ -28,7 +28,7 @@ pub fn rules_svg(slice: &Slice, model: &Model) -> String {
     let order: Vec<usize> = areas.keys().copied().collect();
     let mut document = SvgDocument::map();
     let frame = Frame::MAP;
-    let title = format!("{}, dominating rule", slice.title());
+    let title = format!("{}, dominant rule", slice.title());
     document.heading(frame.left, &title, &slice.held_text());
     cells(&mut document, slice, |i, j| {
         let rule = slice.cell(i, j).rule?;
@@ -76,5 +76,5 @@ pub fn rules_svg(slice: &Slice, model: &Model) -> String {
         document.text(at, Anchor::Start, "label", &more);
     }
     document.notes(slice);
-    document.finish(&format!("{}, dominating rule", whole_title(slice)))
+    document.finish(&format!("{}, dominant rule", whole_title(slice)))
 }

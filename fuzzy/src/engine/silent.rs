@@ -74,7 +74,7 @@ impl fmt::Display for Silence {
                 let strength = libm::round(strength * 1e5) / 1e5;
                 write!(
                     f,
-                    "its strength {strength} is left out by the activation method or the least strength"
+                    "its firing strength {strength} is below `least_strength`, or the activation method does not select the rule"
                 )
             }
         }

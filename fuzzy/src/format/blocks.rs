@@ -81,15 +81,7 @@ fn one(
     if let Some(node) = fields.get("operators") {
         let of = format!("`operators` of {what}");
         let keys = ["and", "or", "implication"];
-        let before = findings.len();
         let found = words::operators(node, &of, &keys, model.operators, findings);
-        for finding in findings.iter_mut().skip(before) {
-            if finding.code == "unknown-key" && finding.message.ends_with("`aggregation`") {
-                let help =
-                    "write `aggregation` in an output, or in the `operators` of the rule set";
-                finding.help = Some(help.into());
-            }
-        }
         let found = found.unwrap_or(model.operators);
         (block.and, block.or, block.implication) = (found.and, found.or, found.implication);
     }

@@ -14,7 +14,7 @@ use crate::{
         LowerFunction, MembershipFunction, Term, Variable,
         footprint::{self, Footprint, NoFootprint},
     },
-    tree::{Fields, Node, Value},
+    tree::{Fields, Node, Value, percentage_advice},
 };
 
 /// The keys beside a membership function that define the lower membership function of the term.
@@ -48,7 +48,12 @@ pub(super) fn extended(
         return Some(term);
     }
     if let Some(entry) = blur {
-        let share = share(&format!("`blur` of {what}"), entry.value, findings)?;
+        let share = share(
+            &format!("`blur` of {what}"),
+            entry.value,
+            variable,
+            findings,
+        )?;
         return blurred(what, &term, share, variable, entry.value, spans, findings);
     }
     let scale = match scale {
@@ -128,7 +133,7 @@ pub(super) fn blur_partition(
     spans: &mut VariableSpans,
     findings: &mut Vec<Diagnostic>,
 ) {
-    let Some(share) = share(&format!("`blur` of {what}"), node, findings) else {
+    let Some(share) = share(&format!("`blur` of {what}"), node, variable, findings) else {
         return;
     };
     for i in 0..variable.terms.len() {
@@ -252,8 +257,28 @@ pub(super) fn misplaced(what: &str, fields: &Fields<'_>, findings: &mut Vec<Diag
 }
 
 /// Reads a distance as a share of the range.
-fn share(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<f64> {
-    number_in(what, node, BELOW_1, findings)
+fn share(
+    what: &str,
+    node: &Node,
+    variable: &Variable,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<f64> {
+    let before = findings.len();
+    let found = number_in(what, node, BELOW_1, findings);
+    let distance = node
+        .as_number_text()
+        .and_then(|text| text.parse::<f64>().ok());
+    let width = variable.high - variable.low;
+    if let (Some(distance), Some(finding)) = (distance, findings.get_mut(before))
+        && distance > 0.0
+        && distance < width
+    {
+        finding.help = Some(format!(
+            "it is a share of the width of the range: for {distance} of {width} write `{}`",
+            rounded(distance / width)
+        ));
+    }
+    found
 }
 
 /// Reads one lag for both flanks, or one for each.
@@ -290,16 +315,15 @@ fn number_in(
     (range, valid): NumberRange,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<f64> {
-    let number = node.finite(what, findings)?;
+    let number = node.share(what, findings)?;
     if valid(number) {
         return Some(number);
     }
     let message = format!("{what} is {number}, but must be {range}");
-    findings.push(Diagnostic::error(
-        "wrong-parameter",
-        node.span.clone(),
-        message,
-    ));
+    let mut finding = Diagnostic::error("wrong-parameter", node.span.clone(), message);
+    finding.help =
+        Some(percentage_advice(number).unwrap_or_else(|| "write for example `0.1`".into()));
+    findings.push(finding);
     None
 }
 
@@ -431,7 +455,7 @@ mod tests {
         refused(
             "terms: {warm: {triangle: [4, 8, 16], lower_scale: 1.5}}",
             "`lower_scale` of term `warm` of input `x` is 1.5, but must be greater than 0, at most 1",
-            "",
+            "write for example `0.1`",
         );
         refused(
             "terms: {warm: {gaussian: {mean: [22, 18], sd: 3}}}",

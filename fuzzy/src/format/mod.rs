@@ -127,22 +127,24 @@ pub fn read_partly(tree: &Node) -> Option<PartialModel> {
     })
 }
 
+/// The keys of a rule set.
+const KEYS: [&str; 12] = [
+    "fuzzy",
+    "name",
+    "description",
+    "inputs",
+    "outputs",
+    "operators",
+    "activation",
+    "least_strength",
+    "rules",
+    "blocks",
+    "allow",
+    "provenance",
+];
+
 /// Reads the model as far as possible. A part that cannot be read is reported, and only its name is included.
 fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Option<Model> {
-    const KEYS: [&str; 12] = [
-        "fuzzy",
-        "name",
-        "description",
-        "inputs",
-        "outputs",
-        "operators",
-        "activation",
-        "least_strength",
-        "rules",
-        "blocks",
-        "allow",
-        "provenance",
-    ];
     if !matches!(tree.value, Value::Mapping(_)) {
         let finding = tree.unexpected_document("rule set");
         findings.push(finding.help("a rule set begins with `fuzzy: 1`"));
@@ -184,14 +186,14 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
             "write `inputs:` and a name, a range and terms for each",
             findings,
         )
-        .and_then(|node| variables::inputs(node, &mut spans.inputs, findings));
+        .and_then(|node| variables::inputs(node, spans, findings));
     let outputs = fields
         .require(
             "outputs",
             "write `outputs:` and a name, a range and terms for each",
             findings,
         )
-        .and_then(|node| variables::outputs(node, &mut spans.outputs, findings));
+        .and_then(|node| variables::outputs(node, spans, findings));
     let operators = fields.get("operators").and_then(|node| {
         let keys = ["and", "or", "implication", "aggregation"];
         words::operators(node, "`operators`", &keys, Operators::default(), findings)
@@ -281,7 +283,7 @@ fn outputs_among_inputs(fields: &Fields<'_>) -> Option<Diagnostic> {
         () if all_exchanged => "exchange the keys `inputs` and `outputs`".into(),
         () => return None,
     };
-    let message = format!("input `{text}` has keys of outputs");
+    let message = format!("input `{text}` has keys that only outputs can have");
     Some(Diagnostic::error("unknown-key", name.span.clone(), message).help(help))
 }
 

@@ -73,6 +73,38 @@ pub(super) fn peaks_in_list(items: &[Node]) -> Option<String> {
     (!peaks.is_empty()).then(|| format!("write braces: `{{{}}}`", peaks.join(", ")))
 }
 
+/// Returns a suggestion for a partition of membership functions, or of intervals such as `{cold: [0, 10], hot: [10, 40]}`.
+pub(super) fn other_terms(entries: &[Entry<'_>]) -> Option<String> {
+    if entries
+        .iter()
+        .all(|entry| matches!(entry.value.value, Value::Mapping(_)))
+    {
+        return (!entries.is_empty()).then(|| "write `terms` in place of `partition`".into());
+    }
+    let ends = entries.iter().map(|entry| match &entry.value.value {
+        Value::List(ends) => match ends.as_slice() {
+            [low, high] => low.as_number_text().and(high.as_number_text()),
+            _ => None,
+        },
+        _ => None,
+    });
+    let ends: Vec<&str> = ends.collect::<Option<_>>()?;
+    let last = entries.len().checked_sub(1)?;
+    let steps = entries
+        .iter()
+        .zip(ends)
+        .enumerate()
+        .map(|(i, (entry, end))| match i == last {
+            true => format!("{}: ", entry.key),
+            false => format!("{}: {end}", entry.key),
+        });
+    let steps: Vec<String> = steps.collect();
+    Some(format!(
+        "for limits in place of peaks write `steps: {{{}}}`",
+        steps.join(", ")
+    ))
+}
+
 /// Returns a suggestion for peaks such as `{cold:10, hot:35}` or `{cold=10, hot=35}`, which YAML reads as names.
 pub(super) fn colons_without_space(entries: &[Entry<'_>]) -> Option<String> {
     let peaks = entries.iter().map(|entry| {

@@ -26,7 +26,13 @@ pub(super) fn read(
 ) -> Option<Vec<Rule>> {
     let Value::List(items) = &node.value else {
         let finding = node.unexpected("a list for `rules`");
-        findings.push(finding.help("begin the line of each rule with `- IF`; rules have no names"));
+        let is_list = node
+            .as_text()
+            .is_some_and(|text| text.trim_start().starts_with("- "));
+        findings.push(finding.help(match is_list {
+            true => "remove the `|` or `>` after `rules:`: it makes a text of the list",
+            false => "begin the line of each rule with `- IF`; rules have no names",
+        }));
         return None;
     };
     let owner = |kind: &str, term: &str| {
@@ -188,7 +194,25 @@ fn colon(what: &str, key: &Node, value: &Node) -> Option<Diagnostic> {
         }
         _ => false,
     };
-    let (message, help) = if is_rule(key) {
+    let last = key
+        .as_text()
+        .and_then(|key| key.split_whitespace().next_back());
+    let keyword = last.filter(|last| {
+        ["THEN", "WITH"]
+            .iter()
+            .any(|word| word.eq_ignore_ascii_case(last))
+    });
+    let is_of_fis = |key: &str| {
+        let is_sign = |c: char| c.is_ascii_digit() || " ,()-.".contains(c);
+        key.contains(',') && key.chars().all(is_sign)
+    };
+    let after_keyword = keyword.map(|keyword| format!("remove the colon after `{keyword}`"));
+    let (message, help) = if let Some(help) = after_keyword.as_deref().filter(|_| is_rule(key)) {
+        (format!("{what} contains a colon"), help)
+    } else if key.as_text().is_some_and(is_of_fis) {
+        let help = "write it in words: `IF input IS term THEN output IS term`; a whole file in FIS can be imported";
+        (format!("{what} consists of numbers, as in FIS"), help)
+    } else if is_rule(key) {
         let help = "put the rule in quotes, or write a remark after `#`";
         (format!("{what} contains a colon"), help)
     } else if is_rule(value) && !matches!(&key.value, Value::Scalar(key) if key.text == "rule") {

@@ -443,14 +443,12 @@ fn short_term() -> Node {
         ),
         (
             "lower_scale",
-            degree(
-                "The lower membership function is the upper one times this number; 1 where absent",
-            ),
+            degree("The lower membership function is the upper one times this number; default: 1"),
         ),
         (
             "lower_lag",
             ends(
-                "The degree of the upper membership function at which the lower one starts to rise, or one for the left and one for the right flank; 0 where absent",
+                "The degree of the upper membership function at which the lower one starts to rise, or one for the left and one for the right flank; default: 0",
                 lag,
             ),
         ),

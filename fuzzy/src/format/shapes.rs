@@ -8,7 +8,8 @@ use alloc::{
 
 use super::footprints;
 use crate::{
-    diagnostic::{Diagnostic, all_of, suggest},
+    diagnostic::{Diagnostic, all_of, nearest, suggest},
+    foreign,
     model::{Formula, MembershipFunction, ShapeForm, ShapeParts, document::TermSpans},
     rule::Name,
     tree::{Entry, Fields, Node, Value},
@@ -49,12 +50,23 @@ pub(super) fn read(
                 "write the membership function as the key: `{{{}: ...}}`",
                 name.text
             )),
-            _ => suggest(shape.key, known),
+            _ => upper_and_lower(fields).or_else(|| suggest(shape.key, known)),
         };
         findings.push(finding);
         return None;
     }
     if let Some(second) = shapes.next() {
+        let beside = footprints::KEYS.into_iter().chain(["height"]);
+        if let Some(key) = foreign::meant(second.key, beside.clone())
+            .first()
+            .copied()
+            .or_else(|| nearest(second.key, beside))
+        {
+            let message = format!("{term} has no key `{}`", second.key);
+            let finding = Diagnostic::error("unknown-key", second.key_span.clone(), message);
+            findings.push(finding.help(format!("did you mean `{key}`?")));
+            return None;
+        }
         // In braces, a comma ends the formula: `{function: max(x, 3)}` has a second key `3)`.
         if shape.key == "function"
             && second.value.is_null()
@@ -88,6 +100,17 @@ pub(super) fn read(
             by_form(form, shape.value, spans, findings)
         }
     }
+}
+
+/// Returns a suggestion for the words of other programs for the two membership functions of a type-2 term.
+fn upper_and_lower(fields: &Fields<'_>) -> Option<String> {
+    let entries = fields.entries().iter();
+    let pairs = entries.filter_map(|entry| {
+        let here = foreign::meant(entry.key, ["upper", "lower"]);
+        Some(format!("`{}` in place of `{}`", here.first()?, entry.key))
+    });
+    let pairs: Vec<String> = pairs.collect();
+    (!pairs.is_empty()).then(|| format!("write {}", pairs.join(", ")))
 }
 
 fn by_form(
@@ -138,6 +161,10 @@ fn by_form(
                 format!("named parameters for the {name}")
             };
             let mut finding = node.unexpected(&expected);
+            let numbers: Vec<&str> = match &node.value {
+                Value::List(items) => items.iter().filter_map(Node::as_number_text).collect(),
+                _ => Vec::new(),
+            };
             if let Value::List(items) = &node.value
                 && form.as_list()
             {
@@ -146,7 +173,13 @@ fn by_form(
                     names.len(),
                     items.len()
                 );
-                finding.help = Node::list_advice(items, names.len());
+                let other = match (name, numbers.len()) {
+                    ("triangle", 4) => Some("trapezoid"),
+                    ("trapezoid", 3) => Some("triangle"),
+                    _ => None,
+                };
+                let other = other.map(|other| format!("write `{other}: [{}]`", numbers.join(", ")));
+                finding.help = Node::list_advice(items, names.len()).or(other);
             }
             finding.help.get_or_insert_with(|| spelling(form));
             findings.push(finding);
@@ -171,22 +204,44 @@ fn other_parameters(form: &ShapeForm, fields: &Fields<'_>) -> Diagnostic {
         all_of(&others)
     );
     let span = unknown.first().map_or(0..0, |entry| entry.key_span.clone());
+    // The number of each parameter, if the keys have other meanings; the only other key is the remaining parameter.
+    let parameter = |entry: &Entry<'_>| foreign::parameter(form.name, entry.key, &names);
+    let entries = fields.entries().iter();
+    let (known, others): (Vec<&Entry<'_>>, Vec<_>) =
+        entries.partition(|entry| parameter(entry).is_some());
+    let rest = match others.as_slice() {
+        [only] => Some(*only),
+        _ => None,
+    };
+    let meant = names.iter().map(|name| {
+        let mut entries = known.iter().filter(|entry| parameter(entry) == Some(name));
+        let entry = entries.next().copied().or(rest);
+        entry
+            .filter(|_| entries.next().is_none())?
+            .value
+            .as_number_text()
+    });
+    let meant: Option<Vec<&str>> = meant.collect();
+    let meant = meant.filter(|_| fields.entries().len() == names.len());
     let numbers = fields
         .entries()
         .iter()
-        .filter_map(|entry| entry.value.as_number_text());
-    let numbers: Vec<&str> = numbers.collect();
-    let help = match numbers.len() == names.len() {
-        true if form.as_list() => format!("write `{}: [{}]`", form.name, numbers.join(", ")),
-        true => {
-            let named = names
-                .iter()
-                .zip(numbers)
-                .map(|(name, number)| format!("{name}: {number}"));
-            let named: Vec<String> = named.collect();
+        .map(|entry| entry.value.as_number_text());
+    let numbers = numbers.collect::<Option<Vec<&str>>>();
+    // Without known keys, only the order of a list is certain.
+    let numbers = numbers.filter(|numbers| form.as_list() && numbers.len() == names.len());
+    let help = match meant.or(numbers) {
+        Some(numbers) if form.as_list() => {
+            format!("write `{}: [{}]`", form.name, numbers.join(", "))
+        }
+        Some(numbers) => {
+            let named = names.iter().zip(numbers);
+            let named: Vec<String> = named
+                .map(|(name, number)| format!("{name}: {number}"))
+                .collect();
             format!("write `{}: {{{}}}`", form.name, named.join(", "))
         }
-        false => spelling(form),
+        None => spelling(form),
     };
     Diagnostic::error("unknown-key", span, message).help(help)
 }
@@ -217,7 +272,19 @@ fn points(
     spans: &mut TermSpans,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<MembershipFunction> {
-    let items = node.items(&format!("the points of {term}"), POINTS_HELP, findings)?;
+    let help = match &node.value {
+        // For example `{20: 0, 50: 1}`.
+        Value::Mapping(pairs) => {
+            let pairs = pairs.iter().map(|(x, degree)| {
+                Some(format!("[{}, {}]", x.as_text()?, degree.as_number_text()?))
+            });
+            let points: Option<Vec<String>> = pairs.collect();
+            points.map(|points| format!("write `piecewise: [{}]`", points.join(", ")))
+        }
+        _ => None,
+    };
+    let help = help.as_deref().unwrap_or(POINTS_HELP);
+    let items = node.items(&format!("the points of {term}"), help, findings)?;
     if let Some(first) = items.first()
         && items.iter().all(|item| item.as_text().is_some())
     {
@@ -290,9 +357,17 @@ fn linear(
     spans: &mut TermSpans,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<MembershipFunction> {
-    let help = "write a factor for each input and a constant: `linear: {temperature: 2, constant: 5}`; a formula is a \
-                `function: 2 * temperature + 5`";
-    let entries = node.entries("the linear term", "key", help, findings)?;
+    let help = match node
+        .as_text()
+        .filter(|text| text.parse::<Formula>().is_ok())
+    {
+        Some(formula) => format!("a formula is a function: write `function: {formula}`"),
+        None => {
+            "write a factor for each input and a constant: `linear: {temperature: 2, constant: 5}`"
+                .into()
+        }
+    };
+    let entries = node.entries("the linear term", "key", &help, findings)?;
     let mut coefficients = Vec::new();
     let (mut constant, mut constant_span) = (0.0, 0..0);
     for entry in entries {

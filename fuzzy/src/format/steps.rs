@@ -36,7 +36,9 @@ pub(super) fn read(
         steps.push((entry, limit));
     }
     if findings.len() == before {
-        order(what, &steps, findings);
+        order(what, node, &steps, variable, findings);
+    }
+    if findings.len() == before {
         // Formats that sort keys do not preserve the order in which the terms were written.
         let by_limit = |limit: Option<f64>| limit.unwrap_or(f64::INFINITY);
         steps.sort_by(|(_, a), (_, b)| by_limit(*a).total_cmp(&by_limit(*b)));
@@ -97,7 +99,15 @@ fn advice(term: &str, limit: &Node) -> Option<String> {
     let Some(text) = limit.as_text() else {
         return matches!(limit.value, Value::List(_)).then(|| HELP.into());
     };
-    let number = text.trim_start_matches(['<', '=', '≤', ' ']);
+    // For example `30..60`: the end of the term is its limit.
+    let range = text.rsplit_once("..").or_else(|| text.rsplit_once('-'));
+    let end = range
+        .filter(|(low, _)| low.trim().parse::<f64>().is_ok())
+        .map(|(_, end)| end.trim());
+    if text.starts_with(['>', '≥']) {
+        return Some(format!("the last term has no limit: write `{term}:`"));
+    }
+    let number = end.unwrap_or(text).trim_start_matches(['<', '=', '≤', ' ']);
     match number.parse::<f64>() {
         Ok(limit) if limit.is_finite() => Some(format!("write `{term}: {number}`")),
         Ok(_) => Some(format!("the last term has no limit: write `{term}:`")),
@@ -116,23 +126,77 @@ fn number(value: &Node) -> &Node {
     }
 }
 
-/// Warns about limits that decrease in the order of the text, because one of them may be a mistake.
-fn order(what: &str, steps: &[(Entry<'_>, Option<f64>)], findings: &mut Vec<Diagnostic>) {
-    for pair in steps.windows(2) {
-        if let [(left, Some(high)), (right, Some(low))] = pair
-            && low < high
-        {
-            let message = format!(
-                "the limit {low} of `{}` of {what} is below the limit {high} of `{}`",
-                right.key, left.key
-            );
-            let span = right.value.span.clone();
-            findings.push(
-                Diagnostic::warning("inverted-parameters", span, message)
-                    .help("write the terms from left to right; they are ordered by their limits"),
-            );
+/// Reports limits that are not in the order of the text, of which the last term has none: they may be understood as
+/// beginnings. Trees of formats that sort keys have no positions, and are not examined.
+fn order(
+    what: &str,
+    node: &Node,
+    steps: &[(Entry<'_>, Option<f64>)],
+    variable: &Variable,
+    findings: &mut Vec<Diagnostic>,
+) {
+    let mut error = |code, span, message| {
+        let help = in_order(steps);
+        findings.push(Diagnostic::error(code, span, message).help(help));
+    };
+    let last = steps.len().saturating_sub(1);
+    let limits: Vec<f64> = steps.iter().filter_map(|(_, limit)| *limit).collect();
+    let open = steps.iter().position(|(_, limit)| limit.is_none());
+    if node.span.is_empty() {
+        return;
+    }
+    if let (Some((entry, None)), 1..) = (steps.get(open.unwrap_or(last)), limits.len())
+        && open != Some(last)
+        && limits.len() == last
+    {
+        let message = format!(
+            "the term `{}` of the steps of {what} has no limit, but is not the last one",
+            entry.key
+        );
+        error("wrong-parameter", entry.key_span.clone(), message);
+    } else if let Some((entry, Some(limit))) = steps.first()
+        && *limit <= variable.low
+        && open.is_none()
+    {
+        let message = format!(
+            "the limit {limit} of `{}`, the first term of the steps of {what}, is the low end of the range",
+            entry.key
+        );
+        error("wrong-parameter", entry.value.span.clone(), message);
+    } else {
+        for pair in steps.windows(2) {
+            if let [(left, Some(high)), (right, Some(low))] = pair
+                && low < high
+            {
+                let message = format!(
+                    "the limit {low} of `{}` of {what} is below the limit {high} of `{}`",
+                    right.key, left.key
+                );
+                let help =
+                    "write the terms from left to right: each limit is above the one before it";
+                let span = right.value.span.clone();
+                let finding = Diagnostic::error("inverted-parameters", span, message);
+                findings.push(finding.help(help));
+            }
         }
     }
+}
+
+/// Returns a suggestion for limits that are beginnings: each is the end of the term before it.
+fn in_order(steps: &[(Entry<'_>, Option<f64>)]) -> String {
+    let names = steps.iter().map(|(entry, _)| entry.key);
+    let limits: Vec<f64> = steps.iter().filter_map(|(_, limit)| *limit).collect();
+    let from = (limits.len() + 1).saturating_sub(steps.len());
+    let mut ends = limits.iter().skip(from);
+    let terms = names.map(|name| match ends.next() {
+        Some(end) => format!("{name}: {end}"),
+        None => format!("{name}: "),
+    });
+    let terms: Vec<String> = terms.collect();
+    format!(
+        "a number is the end of its term, not its beginning: write `steps: {{{}}}`",
+        terms.join(", ")
+    )
 }
 
 /// Reports limits that do not divide the range into the terms; `steps` must be sorted.
@@ -169,6 +233,7 @@ fn check(
             (None, None) => {
                 let message = format!("the terms `{other}` and `{name}` of {what} have no limit");
                 wrong(right.key_span.clone(), "wrong-parameter", message, HELP);
+                break;
             }
             (Some(below), Some(above)) if below == above => {
                 let message = format!(

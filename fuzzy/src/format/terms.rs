@@ -28,13 +28,25 @@ pub(super) fn terms(
     let Some(entries) = node.entries(what, "term", help, findings) else {
         return;
     };
-    spans.terms_unread = false;
+    // A rule may name a term that was meant in place of a repeated one.
+    spans.terms_unread = entries.len() < node.children();
     for entry in &entries {
         let mut here = TermSpans {
             name: entry.key_span.clone(),
             ..TermSpans::default()
         };
+        let before = findings.len();
         let term = term(what, entry, variable, &mut here, findings);
+        // For example `none: 0` beside `some: {constant: 5}`.
+        let computed = ["constant", "linear", "function"];
+        let is_computed =
+            |other: &Entry<'_>| computed.iter().any(|key| other.value.child(key).is_some());
+        if let Some(number) = entry.value.as_number_text()
+            && entries.iter().any(is_computed)
+            && let Some(finding) = findings.get_mut(before)
+        {
+            finding.help = Some(format!("write `{}: {{constant: {number}}}`", entry.key));
+        }
         here.unread = term.is_none();
         variable
             .terms
@@ -55,6 +67,9 @@ fn term(
         let expected = format!("a membership function for {term}");
         let finding = entry.value.unexpected(&expected);
         findings.push(finding.help(match &entry.value.value {
+            Value::List(items) if items.iter().any(|item| matches!(item.value, Value::Mapping(_))) => {
+                "name both: `{upper: {triangle: [0, 2, 4]}, lower: {triangle: [1, 2, 3]}}`"
+            }
             Value::List(items) if items.len() == 4 => "name it: `{trapezoid: [0, 1, 2, 3]}`",
             Value::List(_) => "name it: `{triangle: [0, 1, 2]}`",
             Value::Scalar(scalar) if scalar.as_number().is_some() => {
@@ -136,7 +151,7 @@ fn height(
 ) -> Option<f64> {
     fields.get("height").map_or(Some(1.0), |node| {
         spans.height = node.span.clone();
-        node.finite(&format!("the height of {what}"), findings)
+        node.share(&format!("the height of {what}"), findings)
     })
 }
 

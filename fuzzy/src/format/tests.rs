@@ -347,6 +347,8 @@ fn words_of_other_programs_are_answered_with_ours() {
             "implication",
             "aggregation",
             "fuzzy",
+            "upper",
+            "lower",
         ]),
         // Profiles are read with the same table.
         Vec::from(["flagred", "mean", "std", "if_missing"]),

@@ -4,8 +4,11 @@ use alloc::{collections::BTreeMap, format, string::String, vec::Vec};
 use core::ops::Range;
 
 use super::{
-    TermSpans, VariableSpans, footprints,
-    notation::{bare_numbers, colons_without_space, likely_defuzzifier, meant_by, peaks_in_list},
+    Spans, TermSpans, VariableSpans, footprints,
+    notation::{
+        bare_numbers, colons_without_space, likely_defuzzifier, meant_by, other_terms,
+        peaks_in_list,
+    },
     optional_text, steps,
     terms::{terms, unread},
     words::{AGGREGATIONS, DEFUZZIFIERS, TYPE_REDUCTIONS},
@@ -58,35 +61,103 @@ fn variable_help(name: &str) -> String {
 
 pub(super) fn inputs(
     node: &Node,
-    spans: &mut Vec<VariableSpans>,
+    spans: &mut Spans,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<Vec<Variable>> {
-    let entries = node.entries("`inputs`", "variable", &variables_help("inputs"), findings)?;
+    let entries = entries(("inputs", &INPUT_KEYS), node, spans, findings)?;
     let read = |entry: &Entry<'_>| {
-        let what = format!("input `{}`", entry.key);
-        let fields = entry.fields(&what, &INPUT_KEYS, &variable_help(entry.key), findings);
-        let (variable, here) = variable(&what, entry, fields.as_ref(), findings);
-        spans.push(here);
+        let (variable, here, _) = one(("input", &INPUT_KEYS), entry, spans, findings);
+        spans.inputs.push(here);
         variable
     };
     Some(entries.iter().map(read).collect())
 }
 
-pub(super) fn outputs(
-    node: &Node,
-    spans: &mut Vec<VariableSpans>,
+/// Returns the entries of `inputs` or `outputs`. `None` if they are the keys of a variable, or contain a key of the rule set.
+fn entries<'n>(
+    (key, keys): (&str, &[&str]),
+    node: &'n Node,
+    spans: &mut Spans,
     findings: &mut Vec<Diagnostic>,
-) -> Option<Vec<Output>> {
+) -> Option<Vec<Entry<'n>>> {
     let entries = node.entries(
-        "`outputs`",
+        &format!("`{key}`"),
         "variable",
-        &variables_help("outputs"),
+        &variables_help(key),
         findings,
     )?;
+    // A rule may name the variable that was meant in place of a repeated one.
+    spans.names_unread |= entries.len() < node.children();
+    let is_variable = |entry: &&Entry<'_>| matches!(entry.value.value, Value::Mapping(_));
+    let has_range = |entry: &Entry<'_>| entry.value.child("range").is_some();
+    let kind = key.trim_end_matches('s');
+    let nameless = entries
+        .iter()
+        .find(|entry| entry.key == "range" && !is_variable(entry));
+    if let Some(range) = nameless
+        && entries.iter().all(|entry| keys.contains(&entry.key))
+    {
+        let message = format!("`{key}` has the keys of an {kind}, but no name");
+        let help = format!(
+            "write a name above them, and indent them below it: `{key}: {{speed: {{range: [0, 10], ...}}}}`"
+        );
+        findings.push(Diagnostic::error("missing-key", range.key_span.clone(), message).help(help));
+        return None;
+    }
+    let of_rule_set = |entry: &&Entry<'_>| super::KEYS.contains(&entry.key) && !has_range(entry);
+    if let Some(stray) = entries.iter().find(of_rule_set) {
+        let message = format!("`{}`, a key of the rule set, is below `{key}`", stray.key);
+        let help = format!("indent `{}:` like `{key}:`", stray.key);
+        let finding = Diagnostic::error("unknown-key", stray.key_span.clone(), message);
+        findings.push(finding.help(help));
+        return None;
+    }
+    Some(entries)
+}
+
+/// Reads an input or the common part of an output.
+fn one<'n>(
+    (kind, keys): (&str, &[&str]),
+    entry: &Entry<'n>,
+    spans: &mut Spans,
+    findings: &mut Vec<Diagnostic>,
+) -> (Variable, VariableSpans, Option<Fields<'n>>) {
+    let what = format!("{kind} `{}`", entry.key);
+    let before = findings.len();
+    let fields = entry.fields(&what, keys, &variable_help(entry.key), findings);
+    let (variable, here) = variable(&what, entry, fields.as_ref(), findings);
+    // A variable below another one, whose keys are duplicates if they are in the same column.
+    let repeats = |finding: &Diagnostic| {
+        finding.code == "duplicate-key" && finding.message.starts_with(&what)
+    };
+    let has_repeated = findings.iter().skip(before).any(repeats);
+    let mut unknown = fields.iter().flat_map(Fields::unknown);
+    let nested = unknown.find(|other| {
+        other.value.child("range").is_some() || other.value.is_null() && has_repeated
+    });
+    if let Some(nested) = nested {
+        findings.truncate(before);
+        let message = format!(
+            "{what} has no key `{}`, which looks like an {kind}",
+            nested.key
+        );
+        let finding = Diagnostic::error("unknown-key", nested.key_span.clone(), message);
+        findings.push(finding.help(format!("indent `{}:` like `{}:`", nested.key, entry.key)));
+        spans.names_unread = true;
+    }
+    drop(unknown);
+    (variable, here, fields)
+}
+
+pub(super) fn outputs(
+    node: &Node,
+    spans: &mut Spans,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<Vec<Output>> {
+    let entries = entries(("outputs", &OUTPUT_KEYS), node, spans, findings)?;
     let read = |entry: &Entry<'_>| {
         let what = format!("output `{}`", entry.key);
-        let fields = entry.fields(&what, &OUTPUT_KEYS, &variable_help(entry.key), findings);
-        let (variable, mut here) = variable(&what, entry, fields.as_ref(), findings);
+        let (variable, mut here, fields) = one(("output", &OUTPUT_KEYS), entry, spans, findings);
         let mut output = Output {
             variable,
             defuzzifier: Defuzzifier::Centroid,
@@ -125,7 +196,7 @@ pub(super) fn outputs(
                 output.type_reduction = word.unwrap_or_default();
             }
         }
-        spans.push(here);
+        spans.outputs.push(here);
         output
     };
     Some(entries.iter().map(read).collect())
@@ -314,7 +385,10 @@ fn range(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<(f64
     let help = "write the minimum and the maximum: `range: [0, 1]`";
     let Value::List(ends) = &node.value else {
         let finding = node.unexpected(&format!("two numbers for the range of {what}"));
-        findings.push(finding.help(help));
+        findings.push(match two_numbers(node) {
+            Some([low, high]) => finding.help(format!("write `range: [{low}, {high}]`")),
+            None => finding.help(help),
+        });
         return None;
     };
     let [low, high] = ends.as_slice() else {
@@ -326,6 +400,31 @@ fn range(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<(f64
     let end = format!("the range of {what}");
     let (low, high) = (low.finite(&end, findings), high.finite(&end, findings));
     Some((low?, high?))
+}
+
+/// Returns the numbers of a range in another notation: `0..40`, `0 - 40`, `{min: 0, max: 40}`.
+fn two_numbers(node: &Node) -> Option<[&str; 2]> {
+    let numbers: Vec<&str> = match &node.value {
+        Value::Mapping(pairs) => pairs
+            .iter()
+            .filter_map(|(_, value)| value.as_number_text())
+            .collect(),
+        Value::Scalar(scalar) => {
+            let separators = ["..", " - ", " to ", ",", ";", "-", " "];
+            let mut separators = separators.iter();
+            let (low, high) = separators.find_map(|sign| {
+                let (low, high) = scalar
+                    .text
+                    .trim_matches(['(', ')', '[', ']'])
+                    .split_once(sign)?;
+                let is_number = |text: &str| text.trim().parse::<f64>().is_ok();
+                (is_number(low) && is_number(high)).then_some((low.trim(), high.trim()))
+            })?;
+            Vec::from([low, high])
+        }
+        Value::List(_) => return None,
+    };
+    <[&str; 2]>::try_from(numbers).ok()
 }
 
 const PARTITION_HELP: &str =
@@ -376,6 +475,16 @@ fn partition(
                     format!("the peaks of the partition of {what} are not separated by `: `");
                 let span = node.span.clone();
                 findings.push(Diagnostic::error("yaml-syntax", span, message).help(help));
+                return;
+            }
+            if let Some(help) = other_terms(&entries) {
+                let message = format!("the partition of {what} has no peaks");
+                let span = node.span.clone();
+                findings.push(Diagnostic::error("wrong-type", span, message).help(help));
+                spans.terms = term_spans(entries.iter().map(|entry| &entry.key_span));
+                spans.terms.iter_mut().for_each(|term| term.unread = true);
+                variable.terms = entries.iter().map(|entry| unread(entry.key)).collect();
+                spans.terms_unread = false;
                 return;
             }
             let mut found = Vec::new();

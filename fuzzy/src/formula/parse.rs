@@ -387,6 +387,18 @@ fn percent(text: &str, start: usize) -> bool {
     number.is_some_and(|number| number.ends_with(|c: char| c.is_ascii_digit()))
 }
 
+/// Returns the first number with a comma between its digits, with a point in place of the comma.
+fn decimal_comma(text: &str) -> Option<String> {
+    let digits = |part: &str| part.bytes().take_while(u8::is_ascii_digit).count();
+    text.match_indices(',').find_map(|(at, _)| {
+        let (before, after) = (text.get(..at)?, text.get(at + 1..)?);
+        let start = before.trim_end_matches(|c: char| c.is_ascii_digit()).len();
+        let (whole, part) = (before.get(start..)?, after.get(..digits(after))?);
+        let is_number = !whole.is_empty() && !part.is_empty();
+        is_number.then(|| format!("{whole}.{part}"))
+    })
+}
+
 impl FormulaMistake<'_> {
     /// Returns the diagnostic of the syntax error.
     fn explain(self, text: &str) -> Diagnostic {
@@ -430,7 +442,12 @@ impl FormulaMistake<'_> {
             }
             FormulaMistakeKind::Operator => {
                 let message = format!("expected an operator or the end, found {shown}");
-                let before = text.get(..start).unwrap_or("").trim_end();
+                let before = text.get(..start).unwrap_or("");
+                let whole = before.trim_end_matches(|c: char| c.is_ascii_digit()).len();
+                let end = rest.find(' ').unwrap_or(rest.len());
+                let comma = text.get(whole..start + end).and_then(decimal_comma);
+                let decimal = comma.map(|number| format!("write a decimal point: `{number}`"));
+                let before = before.trim_end();
                 let before = before.rsplit(|c: char| !c.is_alphanumeric()).next();
                 let is_function = |(operation, word, _): &&(Operation, &str, usize)| {
                     operation.binds().is_none() && Some(*word) == before
@@ -455,6 +472,7 @@ impl FormulaMistake<'_> {
                     "<>" | "=/=" => "write `!=`",
                     "=<" => "write `<=`",
                     "=>" => "write `>=`",
+                    "," if decimal.is_some() => decimal.as_deref().unwrap_or(""),
                     "," => {
                         "a decimal point is written as `.`; a comma separates the operands of a function"
                     }
@@ -488,7 +506,13 @@ impl FormulaMistake<'_> {
             FormulaMistakeKind::Count(name, takes, has) => {
                 let numbers = if takes == 1 { "number" } else { "numbers" };
                 let message = format!("`{name}` takes {takes} {numbers}, not {has}");
+                let comma = decimal_comma(rest);
+                // Other commas are followed by a blank.
+                let comma = comma.filter(|_| has > takes && rest.contains(", "));
                 let help = match takes {
+                    _ if comma.is_some() => {
+                        format!("write a decimal point: `{}`", comma.unwrap_or_default())
+                    }
                     1 => format!("write `{name}(x)`"),
                     _ if has > 2 => format!("nest it: `{name}({name}(x, y), z)`"),
                     _ => format!("write `{name}(x, y)`"),

@@ -222,7 +222,7 @@ fn complete(shape: &[u16], decisions: &mut BTreeMap<Box<[u16]>, Decision>) -> u6
                     term: *term,
                     confidence: None,
                     note: Some(format!(
-                        "no samples; as the nearest rule, {} away",
+                        "no samples; consequent of the nearest rule, {} away",
                         match steps(from) {
                             1 => "1 step".into(),
                             steps => format!("{steps} steps"),

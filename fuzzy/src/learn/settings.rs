@@ -157,7 +157,9 @@ impl core::fmt::Display for LearnError {
             LearnError::Type2 => {
                 f.write_str("the rule set has type-2 terms, for which rules cannot be learned")
             }
-            LearnError::Blocks => f.write_str("learned rules have no rule blocks"),
+            LearnError::Blocks => {
+                f.write_str("the rule set has rule blocks, with which rules cannot be learned")
+            }
             LearnError::ReadsInputs { term } => write!(
                 f,
                 "the term `{term}` of the output is a function of inputs; rules are learned for fuzzy sets and numbers"
@@ -175,14 +177,16 @@ impl LearnError {
     #[must_use]
     pub fn help(&self) -> &'static str {
         match self {
-            LearnError::Outputs { .. } => "learn with one of these outputs and those that it reads",
+            LearnError::Outputs { .. } => {
+                "keep one of these outputs, and the outputs that it reads"
+            }
             LearnError::Chain { .. } => {
                 "correct the rules of the outputs that the last output reads"
             }
             LearnError::Type2 => {
                 "remove the lower membership functions for learning, and add them again afterwards"
             }
-            LearnError::Blocks => "remove `blocks` and its rules; add blocks again after learning",
+            LearnError::Blocks => "remove `blocks`, and add blocks again after learning",
             LearnError::ReadsInputs { .. } => {
                 "replace it by a number, such as `{constant: 5}`; `tune` fits functions of inputs to rows, for rules that you write"
             }

@@ -71,6 +71,8 @@ pub struct Spans {
     pub provenance: Range<usize>,
     /// Whether a rule could not be parsed and is missing from the model; a finding reports the error.
     pub(crate) rules_unread: bool,
+    /// Whether an input or output could not be read under its name; a finding reports the error.
+    pub(crate) names_unread: bool,
 }
 
 /// The positions of the parts of a rule block.

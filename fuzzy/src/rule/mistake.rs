@@ -8,7 +8,10 @@ use super::{
     Hedge, Rule, is_plain_name,
     parse::{DEEPEST_NESTING, is_name_letter, keyword, quoted, word},
 };
-use crate::diagnostic::{Diagnostic, either, is_curly_quote, meant, nearest, suggest};
+use crate::{
+    diagnostic::{Diagnostic, either, is_curly_quote, meant, nearest, suggest},
+    tree::{percentage_advice, share_of_percentage},
+};
 
 /// A syntax error, with the remaining text at the position where it was detected.
 pub(super) struct RuleMistake<'a> {
@@ -147,14 +150,13 @@ impl RuleMistake<'_> {
             }
             RuleMistakeKind::Number => syntax(format!("expected a weight after `WITH`, found {shown}"))
                 .help(weight_advice(rest)),
-            RuleMistakeKind::Weight(weight) => Diagnostic::error(
-                "weight-outside-range",
-                span,
-                format!("the weight `{weight}` is outside [0, 1]"),
-            )
-            .help(
-                "a weight multiplies the firing strength of its rule; write a number from 0 to 1",
-            ),
+            RuleMistakeKind::Weight(weight) => {
+                let message = format!("the weight `{weight}` is outside [0, 1]");
+                let help = percentage_advice(weight).unwrap_or_else(|| {
+                    "a weight multiplies the firing strength of its rule; write a number from 0 to 1".into()
+                });
+                Diagnostic::error("weight-outside-range", span, message).help(help)
+            }
             RuleMistakeKind::TooDeep => Diagnostic::error(
                 "rule-too-deep",
                 span,
@@ -232,6 +234,28 @@ fn is_missing(
     owner: Owner<'_>,
 ) -> Option<String> {
     let found = found_here(rest);
+    // For example `IF "temperature IS cold" THEN`, and `IF temperature.cold THEN`.
+    if name.starts_with(['"', '\'']) && name.to_ascii_lowercase().contains(" is ") {
+        return Some("remove the quotes: they make one name of the condition".into());
+    }
+    let parts = name.match_indices(['.', '_']).find_map(|(at, _)| {
+        let (of, term) = (name.get(..at)?, name.get(at + 1..)?);
+        let term = term.trim_start_matches("is_");
+        (owner(kind, term).as_deref() == Some(of)).then_some((of, term))
+    });
+    if let Some((of, term)) = parts {
+        return Some(format!("write `{of} IS {term}`"));
+    }
+    // For example `IF (temperature, cold) THEN`, and `IF temperature(cold) THEN`.
+    let next = found_here(rest.trim_start_matches([',', '(', '[', '"', '\'', ' ']));
+    if found.starts_with([',', '(', '[']) && owner(kind, next).as_deref() == Some(name) {
+        return Some(format!("write `{name} IS {next}`"));
+    }
+    if found == "," && kind == "input" {
+        return Some(format!(
+            "write a condition for each input: `{name} IS term AND {next} IS term`"
+        ));
+    }
     if found.is_empty()
         || CONNECTIVES
             .iter()
@@ -451,6 +475,12 @@ fn name_is_missing(what: &str, found: &str) -> Option<String> {
     if !input && is("IS") {
         return Some("remove the second `IS`".into());
     }
+    if what.contains("term") && found == "(" {
+        return Some("write the term without brackets: `IS very low`".into());
+    }
+    if what == "the name of an output" && is(":") {
+        return Some("remove the colon".into());
+    }
     if what == "the name of an output" && is("THEN") {
         return Some("remove the second `THEN`".into());
     }
@@ -466,19 +496,21 @@ fn name_is_missing(what: &str, found: &str) -> Option<String> {
 
 /// Returns a suggestion for a weight such as `50%` or `weight 0.5`.
 fn weight_advice(rest: &str) -> String {
+    let rest = rest.trim_start_matches(['=', ':', ' ']);
     let mut words = rest.split_whitespace();
     let first = words.next().unwrap_or("");
-    let percent = first
-        .strip_suffix('%')
-        .and_then(|number| number.parse::<f64>().ok());
+    if first
+        .parse::<f64>()
+        .is_ok_and(|weight| (0.0..=1.0).contains(&weight))
+    {
+        return format!("write `WITH {first}`");
+    }
+    let share = share_of_percentage(first);
     let named = words
         .next()
         .filter(|_| first.eq_ignore_ascii_case("weight"));
-    match (
-        percent,
-        named.filter(|number| number.parse::<f64>().is_ok()),
-    ) {
-        (Some(percent), _) => format!("write `WITH {}`", percent / 100.0),
+    match (share, named.filter(|number| number.parse::<f64>().is_ok())) {
+        (Some(share), _) => format!("write `WITH {share}`"),
         (_, Some(number)) => format!("write `WITH {number}`"),
         _ => "a weight is a number from 0 to 1: `WITH 0.8`".into(),
     }
@@ -604,14 +636,19 @@ fn behind_conclusion(before: &str, rest: &str, weighted: bool) -> Option<String>
             .unwrap_or("0.5");
         return Some(format!("write a weight after `WITH`: `WITH {number}`"));
     }
-    if let Some(number) = rest.strip_prefix(',')
-        && number.starts_with(|c: char| c.is_ascii_digit())
-    {
-        return Some("write a decimal point: `WITH 0.8`".into());
+    let number = rest.trim_start_matches([',', '(', '[', ' ']);
+    let end = number.find(|c: char| !c.is_ascii_digit() && c != '.');
+    let number = number.get(..end.unwrap_or(number.len())).unwrap_or("");
+    let whole = before.split_whitespace().next_back().unwrap_or("");
+    if rest.starts_with(',') && !number.is_empty() && whole.parse::<u64>().is_ok() {
+        return Some(format!("write a decimal point: `WITH {whole}.{number}`"));
     }
     match found {
         "," => Some("join conclusions by `AND`".into()),
         ";" => Some("remove it; each rule is an item of the list `rules`".into()),
+        "(" | "[" if number.parse::<f64>().is_ok() => {
+            Some(format!("write a weight after `WITH`: `WITH {number}`"))
+        }
         "(" | "%" | "[" => Some("write a weight after `WITH`: `WITH 0.8`".into()),
         _ if weighted => Some("a weight is the end of its rule; remove everything after it".into()),
         _ if is_plain_name(found) => {

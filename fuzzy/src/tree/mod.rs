@@ -7,10 +7,12 @@
 use alloc::{format, string::String, vec::Vec};
 use core::ops::Range;
 
+mod number;
 mod read;
 #[cfg(feature = "serde")]
 mod serde_impl;
 
+pub use number::{number_advice, percentage_advice, share_of_percentage};
 pub use read::{Entry, Fields};
 
 /// A value with its position in the text.
@@ -169,6 +171,15 @@ impl Node {
         };
         let pair = pairs.iter().find(|(name, _)| name.as_text() == Some(key));
         pair.map(|(_, value)| value)
+    }
+
+    /// Returns the number of entries of a mapping, including repeated keys.
+    #[must_use]
+    pub fn children(&self) -> usize {
+        match &self.value {
+            Value::Mapping(pairs) => pairs.len(),
+            _ => 0,
+        }
     }
 
     /// Returns whether the value is null.

@@ -7,7 +7,10 @@ use alloc::{
 };
 use core::ops::Range;
 
-use super::{Node, Scalar, Value};
+use super::{
+    Node, Scalar, Value,
+    number::{number_advice, share_of_percentage},
+};
 use crate::{
     diagnostic::{Diagnostic, duplicate, either, meant, suggest},
     foreign,
@@ -292,6 +295,17 @@ impl Node {
         }
     }
 
+    /// Reads a finite number that is a share or a degree.
+    pub fn share(&self, what: &str, findings: &mut Vec<Diagnostic>) -> Option<f64> {
+        let before = findings.len();
+        let found = self.finite(what, findings);
+        let percentage = self.as_text().and_then(share_of_percentage);
+        if let (Some(finding), Some(share)) = (findings.get_mut(before), percentage) {
+            finding.help = Some(format!("write it as a share: `{share}`"));
+        }
+        found
+    }
+
     /// Reads an integer of at least `least`.
     pub fn whole(&self, what: &str, least: u64, findings: &mut Vec<Diagnostic>) -> Option<u64> {
         let found = match &self.value {
@@ -410,7 +424,8 @@ impl Node {
         if let [only] = items
             && let Value::Scalar(scalar) = &only.value
         {
-            let numbers: Vec<&str> = scalar.text.split_whitespace().collect();
+            let numbers = scalar.text.split([' ', ';', '|']).map(str::trim);
+            let numbers: Vec<&str> = numbers.filter(|number| !number.is_empty()).collect();
             let is_list = numbers.len() > 1 && numbers.iter().all(|n| n.parse::<f64>().is_ok());
             return is_list
                 .then(|| format!("separate the numbers by commas: `[{}]`", numbers.join(", ")));
@@ -419,14 +434,7 @@ impl Node {
             [whole, part] if part.span.start == whole.span.end + 1 => {
                 let (whole, part) = (whole.as_number_text()?, part.as_number_text()?);
                 let is_part = part.bytes().all(|c| c.is_ascii_digit());
-                // Three digits after a comma are thousands, rather than a fraction.
-                let is_thousands = part.len() == 3 && (1..=3).contains(&whole.len());
-                is_part.then(|| match is_thousands && whole != "0" {
-                    true => format!(
-                        "write the number without a comma: `{whole}{part}`, or with a decimal point: `{whole}.{part}`"
-                    ),
-                    false => format!("write a decimal point: `{whole}.{part}`"),
-                })
+                number_advice(&format!("{whole},{part}")).filter(|_| is_part)
             }
             _ => None,
         });
@@ -470,91 +478,15 @@ impl Node {
             return None;
         };
         let text = scalar.text.trim();
-        let plain = |s: &str| s.parse::<f64>().ok().filter(|x| x.is_finite());
-        if plain(text).is_some() {
+        if text.parse().is_ok_and(f64::is_finite) {
             return Some("remove the quotes".into());
         }
         if text.contains(" //") {
             return Some(COMMENT.into());
         }
-        if let Some(percent) = text.strip_suffix('%').and_then(plain) {
-            return Some(match percent {
-                0.0 => "write only the number: `0`".into(),
-                _ => format!(
-                    "write only the number, in the unit of the value: `{percent}` in percent, `{}` as a share",
-                    percent / 100.0
-                ),
-            });
-        }
-        if plain(&text.replacen(',', ".", 1)).is_some() {
-            return Some(format!(
-                "write a decimal point: `{}`",
-                text.replacen(',', ".", 1)
-            ));
-        }
-        if text.contains(['*', '/', '+'])
-            && let Ok(formula) = text.parse::<crate::formula::Formula>()
-            && let value = formula.evaluate(|_| f64::NAN)
-            && value.is_finite()
-        {
-            return Some(format!("write the number, not a calculation: `{value}`"));
-        }
-        if let Some(number) = other_notation(text) {
-            return Some(format!("write decimal digits only: `{number}`"));
-        }
-        if let Some(positive) = text
-            .strip_prefix(DASHES)
-            .filter(|rest| plain(rest).is_some())
-        {
-            return Some(format!(
-                "this dash is not a minus sign: write `-{positive}`"
-            ));
-        }
-        let digits = text.replace(['O', 'o'], "0").replace('l', "1");
-        if plain(&digits).is_some() {
-            return Some(format!(
-                "did you mean `{digits}`, with digits in place of letters?"
-            ));
-        }
-        let number: String = text
-            .chars()
-            .take_while(|c| c.is_ascii_digit() || matches!(c, '.' | '-' | '+'))
-            .collect();
-        let unit = text.get(number.len()..).unwrap_or("").trim();
-        if let (Some(small), Some((_, larger))) = (
-            plain(&number),
-            MILLI.iter().find(|(milli, _)| *milli == unit),
-        ) {
-            return Some(format!(
-                "write the number without its unit: `{}` if it is in {larger}, `{number}` if in {unit}",
-                small / 1000.0
-            ));
-        }
-        plain(&number).map(|_| format!("write the number without its unit: `{number}`"))
+        number_advice(text)
     }
 }
-
-/// Characters that look like a minus sign: hyphens, dashes and the sign of typesetting.
-const DASHES: [char; 5] = ['\u{2010}', '\u{2011}', '\u{2012}', '\u{2013}', '\u{2212}'];
-
-/// Returns a number in hexadecimal, octal or binary notation, or with `_` between digits.
-fn other_notation(text: &str) -> Option<u64> {
-    let prefixed = [("0x", 16), ("0o", 8), ("0b", 2)].into_iter();
-    let mut numbers = prefixed.filter_map(|(prefix, radix)| {
-        let digits = text.to_ascii_lowercase();
-        u64::from_str_radix(digits.strip_prefix(prefix)?, radix).ok()
-    });
-    numbers.next().or_else(|| {
-        let starts_with_digit = text.starts_with(|c: char| c.is_ascii_digit());
-        text.replace('_', "")
-            .parse()
-            .ok()
-            .filter(|_| starts_with_digit)
-    })
-}
-
-/// Units that are easily confused: each with the unit that is 1000 times as large.
-const MILLI: [(&str, &str); 4] = [("ms", "s"), ("mm", "m"), ("mV", "V"), ("mA", "A")];
 
 impl Scalar {
     /// Returns the number if this is one, in YAML's notations for decimal numbers, infinities and NaN.

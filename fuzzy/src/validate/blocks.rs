@@ -21,12 +21,15 @@ impl Validator<'_> {
         if !(LEAST_STRENGTH..=1.0).contains(least_strength) {
             let message =
                 format!("`least_strength` is {least_strength}, outside [{LEAST_STRENGTH:e}, 1]");
-            let help = match *least_strength > 1.0 && *least_strength <= 100.0 {
-                true => format!(
-                    "a firing strength is from 0 to 1: for {least_strength} % write `{}`",
-                    least_strength / 100.0
+            let help = match *least_strength {
+                percent if percent > 1.0 && percent <= 100.0 => format!(
+                    "a firing strength is from 0 to 1: for {percent} % write `{}`",
+                    percent / 100.0
                 ),
-                false => "a smaller strength is a rounding error of 0; fuzzylite uses 1e-6".into(),
+                small if small < LEAST_STRENGTH => format!(
+                    "strengths below {LEAST_STRENGTH:e} are rounding errors; fuzzylite uses 1e-6"
+                ),
+                _ => "a firing strength is from 0 to 1".into(),
             };
             self.error("value-outside-range", &spans.least_strength, message, &help);
         }
@@ -63,7 +66,7 @@ impl Validator<'_> {
                 )
             } else if rule.block < latest {
                 format!(
-                    "rule {} is in a block before that of the rule before it",
+                    "rule {} belongs to an earlier block than the rule before it",
                     i + 1
                 )
             } else {
@@ -87,7 +90,7 @@ impl Validator<'_> {
             Activation::Threshold { strength, .. } => (1, strength),
         };
         if rules == 0 {
-            let message = format!("the activation of {what} keeps 0 rules");
+            let message = format!("the activation of {what} selects 0 rules");
             let help = "write 1 or more, or `enabled: false` in a block";
             self.error("wrong-parameter", here, message, help);
         }

@@ -126,7 +126,14 @@ impl<'m> Validator<'m> {
                     |sets| format!("write `{sets}` in place of `terms` and `defuzzifier`"),
                 );
                 let help = format!("{sets}, or let a linear function read it");
-                self.error("output-in-condition", &name.span, message, &help);
+                let mut told = self.findings.iter_mut();
+                match told.find(|finding| finding.message == message) {
+                    Some(first) if !name.span.is_empty() => {
+                        *first = first.clone().related(name.span.clone(), "read here too");
+                    }
+                    Some(_) => {}
+                    None => self.error("output-in-condition", &name.span, message, &help),
+                }
             }
             Some(term) => self.known_term(kind, variable, (&proposition.hedges, term)),
             // A proposition `IS any` without a term is parsed like this.
@@ -174,7 +181,7 @@ impl<'m> Validator<'m> {
     pub(super) fn known_term(
         &mut self,
         kind: &str,
-        variable: &Variable,
+        variable: &'m Variable,
         (hedges, term): (&[Hedge], &Name),
     ) {
         // Terms that could not be parsed, and outputs without terms, are reported on their own.
@@ -187,6 +194,31 @@ impl<'m> Validator<'m> {
         let mut finding = Diagnostic::error("unknown-term", term.span.clone(), message);
         let known = variable.terms.iter().map(|t| t.name.as_str());
         finding.help = suggest(&term.text, known).or_else(|| Some("add terms to it".into()));
+        // For example `partition: [10, 20, 30]`, reported once.
+        let number = |term: &Term| term.name.parse::<f64>().is_ok();
+        if variable.terms.iter().all(number) && term.text.parse::<f64>().is_err() {
+            let names = ["low", "medium", "high"].into_iter().map(String::from);
+            let names: Vec<String> = match variable.terms.len() {
+                3 => names.collect(),
+                2 => names.step_by(2).collect(),
+                count => (1..=count).map(|i| format!("term{i}")).collect(),
+            };
+            let peaks = names.iter().zip(&variable.terms);
+            let peaks: Vec<String> = peaks
+                .map(|(name, term)| format!("{name}: {}", term.name))
+                .collect();
+            finding.message = format!(
+                "the terms of {kind} `{}` have numbers as names, and there is no term `{}`",
+                variable.name, term.text
+            );
+            finding.help = Some(format!(
+                "write names with peaks: `partition: {{{}}}`",
+                peaks.join(", ")
+            ));
+            self.findings.push(finding);
+            self.unread.push(&variable.name);
+            return;
+        }
         if term.text.parse::<f64>().is_ok() {
             let help = finding.help.unwrap_or_default();
             finding.help = Some(format!("a rule names a term, not a number; {help}"));

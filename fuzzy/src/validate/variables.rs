@@ -12,6 +12,7 @@ use crate::{
         Defuzzifier, Formula, MembershipFunction, NoRuleFires, Output, Variable,
         document::{TermSpans, VariableSpans},
     },
+    tree::percentage_advice,
 };
 
 /// The minimum width of a range. With narrower ranges, products of degrees and distances lose digits.
@@ -61,8 +62,10 @@ impl Validator<'_> {
         if !(height > 0.0 && height <= 1.0) {
             let here = or(&spans.height, &spans.name);
             let message = format!("the height {height} of {what} is outside (0, 1]");
-            let help = "a height is the largest degree of membership: greater than 0, at most 1";
-            self.error("wrong-parameter", here, message, help);
+            let help = percentage_advice(height).unwrap_or_else(|| {
+                "a height is the largest degree of membership: greater than 0, at most 1".into()
+            });
+            self.error("wrong-parameter", here, message, &help);
         }
     }
 
@@ -82,7 +85,7 @@ impl Validator<'_> {
                 "wrong-range",
                 here,
                 message,
-                "write the values that can occur",
+                "write the minimum and the maximum that can occur",
             );
         } else if high - low < NARROWEST_RANGE {
             let message = format!("the range of {what} is too narrow");
@@ -262,8 +265,9 @@ impl Validator<'_> {
                     self.error("wrong-term", here, message, help);
                 }
                 MembershipFunction::Singleton { .. } if !weighted && !output.is_discrete() => {
-                    let message =
-                        format!("{what} is a singleton, which has no area beside fuzzy sets");
+                    let message = format!(
+                        "{what} is a singleton, which has no area, but other terms of the output are fuzzy sets"
+                    );
                     let help = "make all terms of the output singletons, or this one a narrow set such as `rectangle`";
                     self.error("wrong-term", here, message, help);
                 }

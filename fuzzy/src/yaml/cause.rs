@@ -171,6 +171,9 @@ pub(super) fn line(text: &str, finding: &Diagnostic) -> Option<Diagnostic> {
     if let Some(finding) = bare.filter_map(|at| key_without_colon(text, at)).next() {
         return Some(finding);
     }
+    if let Some(finding) = indented_more(text, start) {
+        return Some(finding);
+    }
     // For example `unit:°C` in the line above.
     let above = before.get(..start)?.trim_end();
     let at = above.rfind('\n').map_or(0, |at| at + 1);
@@ -185,6 +188,41 @@ pub(super) fn line(text: &str, finding: &Diagnostic) -> Option<Diagnostic> {
     let message = String::from("a space is missing after a colon");
     let finding = Diagnostic::error("yaml-syntax", at..at + content.len(), message);
     Some(finding.help("write `key: value`"))
+}
+
+/// Returns a finding if the line that starts at `start` is indented less than the first line of its mapping.
+fn indented_more(text: &str, start: usize) -> Option<Diagnostic> {
+    let indent = |line: &str| line.len() - line.trim_start().len();
+    let line = text.get(start..)?.lines().next()?;
+    let here = indent(line);
+    if line.get(..here)?.contains('\t') {
+        return None;
+    }
+    let mut first = None;
+    let mut end = start;
+    for line in text.get(..start)?.split_inclusive('\n').rev() {
+        end -= line.len();
+        let content = line.trim();
+        if content.is_empty() || content.starts_with('#') {
+            continue;
+        }
+        if line.get(..indent(line))?.contains('\t') {
+            return None;
+        }
+        if indent(line) < here {
+            let (at, line) = first.filter(|_| content.ends_with(':'))?;
+            let message =
+                String::from("the line is indented more than the later ones of its mapping");
+            let finding = Diagnostic::error("yaml-syntax", at..at + str::len(line), message);
+            let help = "begin the keys of one mapping in the same column; if these are the keys of an input or output, write its name above them";
+            return Some(finding.help(help));
+        }
+        if indent(line) == here {
+            return None;
+        }
+        first = Some((end + indent(line), content));
+    }
+    None
 }
 
 fn is_key(key: &str) -> bool {

@@ -291,7 +291,7 @@ fn refuse_tag(span: &Span, tagged: bool) -> Result<(), Box<Diagnostic>> {
     let tag = span.tag_span().unwrap_or(*span);
     let bytes = tag.byte_range().unwrap_or(0..0);
     Err(Box::new(
-        Diagnostic::error("yaml-syntax", bytes, "tags have no meaning here").help("remove the tag"),
+        Diagnostic::error("yaml-syntax", bytes, "tags are not supported").help("remove the tag"),
     ))
 }
 
@@ -317,7 +317,7 @@ fn syntax(text: &str, error: &ScanError) -> Box<Diagnostic> {
             "the text ends at the quote before this point: write `\\\"` for a quote in double quotes"
         }
         ErrorKind::ExpectedBlockSequenceEntry => {
-            "all entries of a list begin with `-`; inputs and outputs have names, and no `-`"
+            "all entries of a list begin with `-`; inputs, outputs and blocks have names, and no `-`"
         }
         ErrorKind::UnknownAnchor => "define it with `&name` before it is used",
         ErrorKind::UnexpectedCharacter { .. } => {

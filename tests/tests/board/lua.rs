@@ -612,7 +612,7 @@ fn unsupported_features_of_a_script_are_refused_with_alternatives() {
             &profile,
             "term `low` of input `spread` is curved",
         ),
-        (&operator, &profile, "operator of the rule set for AND"),
+        (&operator, &profile, "rule set's function for AND"),
         (rules, &signal, "cannot read the signal `wind_m_s`"),
         (rules, &rate, "cannot compute the statistic `rate`"),
         (

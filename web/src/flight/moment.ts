@@ -55,8 +55,8 @@ function facts({ step, filled_from, clamped }: Moment): Child {
   const list = h('dl', { class: 'now' });
   for (const [name, value] of rows) list.append(h('div', {}, h('dt', {}, name), h('dd', {}, value)));
   const notes = [
-    filled_from !== null && `Interpolated: no rule applies. Rules cover inputs ${said(100 * filled_from)} % of their ranges away.`,
-    clamped && 'An input is outside its range; the end of the range counts.',
+    filled_from !== null && `Interpolated: no rule applies. The nearest inputs with a rule are ${said(100 * filled_from)} % of their ranges away.`,
+    clamped && 'An input is outside its range; the end of the range is used.',
     !step.judged && 'Not judged: just after take-off, before landing, or on the ground.',
   ];
   return h('div', {}, list, ...notes.map((note) => note && h('p', { class: 'soft' }, note)));

@@ -178,7 +178,7 @@ export function report(style: string, listener: Listener): Report {
           if (mine !== drawing) return false;
         }
         if (isAll || name === 'signals') made.isEmpty = !html;
-        else if (!html && !made.isEmpty) drawn.append(h('p', { class: 'nothing' }, 'Nothing is known in this stretch of time.'));
+        else if (!html && !made.isEmpty) drawn.append(h('p', { class: 'nothing' }, 'This part of the flight has no known values.'));
         // Elements that may scroll can also be scrolled by keys.
         for (const wide of drawn.querySelectorAll<HTMLElement>('pre, .scroll')) wide.tabIndex = 0;
         made.charts = chartsIn(drawn);

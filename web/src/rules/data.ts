@@ -50,7 +50,7 @@ export function data(app: App, place: Place): Data {
   const stop = h('button', { type: 'button', hidden: true, title: 'Stop, and keep the best rule set so far' }, 'Stop');
   const progress = h('progress', { 'aria-label': 'Search', hidden: true });
   const state = h('p', { role: 'status', class: 'state' });
-  const tools = h('div', { class: 'acts', hidden: true }, tune, learn, h('label', { class: 'check soft' }, complete, ' also rules without rows'), stop, progress);
+  const tools = h('div', { class: 'acts', hidden: true }, tune, learn, h('label', { class: 'check soft' }, complete, ' also rules for combinations without rows'), stop, progress);
   const element = h('section', { class: 'data', 'aria-label': 'Data' }, h('h2', {}, 'Data'), h('div', { class: 'acts' }, choose, file, hint), report, tools, state);
 
   const compare = latest(async (text: string) => {
@@ -145,7 +145,7 @@ export function data(app: App, place: Place): Data {
   const made: Data = {
     element,
     async take(file) {
-      if (search) return app.say('A search runs: stop it first.');
+      if (search) return app.say('Tuning or learning is running: stop it first.');
       try {
         if (file.size > LARGEST_BYTES) throw new Error(`\`${file.name}\` is larger than 50 MB: use fewer rows`);
         csv = { name: file.name, text: new TextDecoder('utf-8', { fatal: true }).decode(await file.arrayBuffer()) };

@@ -52,8 +52,8 @@ async function withLosses(title: string, run: (lossy: boolean) => Promise<Exchan
       await dialog(title, lines, ['Close']);
       return undefined;
     }
-    const goOn = await dialog(title, lines, ['Leave it out and go on', 'Cancel']);
-    return goOn === 'Leave it out and go on' ? lossy : undefined;
+    const goOn = await dialog(title, lines, ['Leave it out and continue', 'Cancel']);
+    return goOn === 'Leave it out and continue' ? lossy : undefined;
   }
 }
 

@@ -129,7 +129,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
   add(
     startFrom,
     h('option', { value: '' }, 'Start from ...'),
-    h('option', { value: 'before' }, 'what I had before'),
+    h('option', { value: 'before' }, 'the text I had before'),
     ...starts.map(({ name, about }, i) => h('option', { value: i }, `${name}: ${about}`)),
   );
   const file = h('input', { type: 'file', hidden: true, accept: '.yaml,.yml,.json,.fis,.fll,.fcl,.fml,.xml', 'aria-label': 'Rule set' });
@@ -431,10 +431,10 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     parameters.set('text', await pack(edit.text()));
     app.navigate(parameters);
     const link = location.href;
-    if (link.length > LONGEST) app.say('The link is in the address, but long: some programs truncate it. A file is safer.');
+    if (link.length > LONGEST) app.say('The link is in the address bar, but long: some programs truncate it. A file is safer.');
     else {
       const isCopied = await navigator.clipboard?.writeText(link).then(() => true, () => false);
-      app.say(isCopied ? 'The link is copied: the rule set is in it.' : 'The link is in the address: copy it from there.');
+      app.say(isCopied ? 'The link is copied: the rule set is in it.' : 'The link is in the address bar: copy it from there.');
     }
   }
 

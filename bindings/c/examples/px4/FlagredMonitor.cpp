@@ -104,7 +104,7 @@ bool FlagredMonitor::init() {
         return false;
     }
     if (flagred_set_geometry(_monitor, factors, _motors) != FLAGRED_OK) {
-        PX4_WARN("geometry unknown: turning counts as any other motion");
+        PX4_WARN("geometry unknown: turns add to the risk");
     }
     _motors_sub.set_interval_us(INTERVAL_US);
     return _motors_sub.registerCallback();

@@ -121,7 +121,7 @@ class Signals(Mapping[str, Signal]):
         """
         names = names_of(names)
         if not names:
-            raise DataError("a table needs the name of a signal")
+            raise DataError("a table needs the name of at least one signal")
         for name in names:
             if name not in self._all:
                 raise DataError(f"the flight has no signal `{name}`\n  help: its signals are {', '.join(self._all)}")

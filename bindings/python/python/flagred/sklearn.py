@@ -111,7 +111,7 @@ class _FuzzyEstimator(BaseEstimator):  # type: ignore[misc]
             validation=False,
         ).model
         if len(model.rules) == 0:
-            raise ValueError(f"no combination of terms has min_support={self.min_support} rows")
+            raise ValueError(f"no combination of terms has at least min_support={self.min_support} rows")
         if self.tune:
             seed = int(check_random_state(self.random_state).randint(2**31 - 1))
             model = tune(
@@ -412,7 +412,7 @@ class FuzzyClassifier(ClassifierMixin, _FuzzyEstimator):  # type: ignore[misc]
         if len(np.unique(places[weight > 0])) < 2:
             raise ValueError("FuzzyClassifier needs rows of 2 classes; there is 1 class")
         if len(self.classes_) > 2 and self.monotonic_cst is not None:
-            raise ValueError("monotonic_cst is for two classes")
+            raise ValueError("monotonic_cst requires exactly two classes")
         peaks = (np.arange(self.n_output_terms) + 0.5) / max(self.n_output_terms, 1)
         first = 1 if len(self.classes_) == 2 else 0
         self.rule_sets_ = []

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use clap::{Arg, Command};
 
-use super::words::{FILES, OPTIONS, RENAMED};
+use super::words::{FILES, OPTIONS, PICTURES, RENAMED, WRITTEN};
 use crate::path::has_ending;
 
 /// A command and the words after it.
@@ -51,13 +51,28 @@ impl<'a> Line<'a> {
         if let Some(value) = value.filter(|value| is_choice && self.has(&format!("--{value}"))) {
             return Some(format!("write `--{value}`"));
         }
-        let mut renamed = RENAMED.iter();
-        if let Some((_, here)) =
-            renamed.find(|(others, here)| has_word(others, option) && self.has(here))
-        {
+        // A file that exists is an input: advice must not lead to its replacement.
+        let new_file = value.filter(|value| !Path::new(value).exists());
+        let mut renamed = RENAMED.iter().filter(|(others, here)| {
+            has_word(others, option)
+                && self.has(here)
+                && (value == new_file || !WRITTEN.contains(here))
+        });
+        if let Some((_, here)) = renamed.next() {
             let takes_value = self.arg(here).is_some_and(takes_value);
             return match (takes_value, value) {
-                (true, Some(value)) => Some(format!("write `{here} {}`", in_shell(value))),
+                (true, Some(value)) => {
+                    let ending = Path::new(value).extension();
+                    let format = here.trim_start_matches('-');
+                    let value = match ending.filter(|_| PICTURES.contains(here)) {
+                        Some(ending) if !ending.eq_ignore_ascii_case(format) => Path::new(value)
+                            .with_extension(format)
+                            .display()
+                            .to_string(),
+                        _ => value.to_owned(),
+                    };
+                    Some(format!("write `{here} {}`", in_shell(&value)))
+                }
                 (true, None) => None,
                 (false, _) => Some(format!("write `{here}`")),
             };
@@ -67,7 +82,7 @@ impl<'a> Line<'a> {
                 *here == "--output" && (word == "-o" || word == *here || has_word(others, word))
             })
         };
-        if let Some(file) = value.filter(|_| is_output(option)) {
+        if let Some(file) = new_file.filter(|_| is_output(option)) {
             return Some(self.output(file));
         }
         if name == "explain" {
@@ -147,13 +162,30 @@ impl<'a> Line<'a> {
                 "separate the values by commas: `{option} {value},{shown}`"
             ));
         }
+        // For example `--hold temperature 5`.
+        if let Some([option, value]) = before
+            && self.arg(option).is_some_and(|arg| {
+                let names = arg.get_value_names().unwrap_or_default();
+                names.iter().any(|name| name.contains('='))
+            })
+        {
+            return Some(format!("write `{option} {value}={shown}`"));
+        }
+        let mut dashless = positionals.iter().filter(|word| {
+            let option = self.arg(&format!("--{word}"));
+            option.is_some_and(|option| !takes_value(option)) && !Path::new(word).exists()
+        });
+        if let Some(option) = dashless.next() {
+            return Some(format!("an option begins with dashes: write `--{option}`"));
+        }
         let language = self.words.iter().find(|other| {
             let ending = other.strip_prefix("--").unwrap_or_default();
-            name == "export" && has_ending(Path::new(first), &[ending])
+            let first = Path::new(first);
+            name == "export" && has_ending(first, &[ending]) && !first.exists()
         });
         if let Some(language) = language {
             return Some(format!(
-                "`{language}` takes no file; write `{language} {shown} --output {first}`"
+                "`{language}` takes no file name; write `{language} {shown} --output {first}`"
             ));
         }
         match name {
@@ -172,6 +204,9 @@ impl<'a> Line<'a> {
                 return Some(format!("`plot` draws all variables: leave `{shown}` out"));
             }
             _ => {}
+        }
+        if name == "map" && word.parse::<f64>().is_ok() {
+            return Some("for a part of an axis write `--x INPUT:LOW..HIGH`".to_owned());
         }
         if name == "map" && path.extension().is_none() {
             let axes = positionals.iter().skip(1).zip(["--x", "--y"]);
@@ -207,11 +242,11 @@ impl<'a> Line<'a> {
         found
     }
 
-    fn has(&self, option: &str) -> bool {
+    pub(super) fn has(&self, option: &str) -> bool {
         self.arg(option).is_some()
     }
 
-    fn arg(&self, option: &str) -> Option<&Arg> {
+    pub(super) fn arg(&self, option: &str) -> Option<&Arg> {
         argument_of(self.command, option)
     }
 }
@@ -225,7 +260,7 @@ fn argument_of<'a>(command: &'a Command, option: &str) -> Option<&'a Arg> {
     })
 }
 
-fn takes_value(arg: &Arg) -> bool {
+pub(super) fn takes_value(arg: &Arg) -> bool {
     arg.get_action().takes_values()
 }
 

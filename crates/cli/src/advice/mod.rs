@@ -12,7 +12,7 @@ use clap::{
 use fuzzy::diagnostic::nearest;
 
 use self::{
-    line::{Line, has_word, in_shell, value_of},
+    line::{Line, has_word, in_shell, takes_value, value_of},
     words::{COMMANDS, VALUES},
 };
 use crate::{
@@ -35,6 +35,8 @@ pub(crate) fn improve(error: &mut clap::Error, program: &Command, words: &[OsStr
         return;
     }
     for similar in [
+        // clap shows any option that fits in its usage, which distracts from the advice.
+        ContextKind::Usage,
         ContextKind::SuggestedArg,
         ContextKind::SuggestedSubcommand,
         ContextKind::SuggestedValue,
@@ -43,6 +45,40 @@ pub(crate) fn improve(error: &mut clap::Error, program: &Command, words: &[OsStr
     }
     let advice = advice.into_iter().map(Into::into).collect();
     error.insert(ContextKind::Suggested, ContextValue::StyledStrs(advice));
+}
+
+/// Recognises a file behind an option that prints to standard output and takes no file, as in `--csv out.csv`.
+pub(crate) fn file_behind_switch(program: &Command, words: &[OsString]) -> Option<Failure> {
+    let words = words.iter().skip(1).map(|word| word.to_str());
+    let words: Vec<String> = words
+        .map(|word| Some(word?.to_owned()))
+        .collect::<Option<_>>()?;
+    let line = Line::of(&words, program)?;
+    let name = line.command.get_name();
+    let pairs = line.words.iter().zip(line.words.iter().skip(1));
+    let (switch, file) = pairs.into_iter().find(|(switch, file)| {
+        let option = switch.strip_prefix("--").unwrap_or_default();
+        line.arg(switch).is_some_and(|arg| !takes_value(arg))
+            && has_ending(Path::new(file), &[option])
+            && !Path::new(file).exists()
+    })?;
+    let others = line.words.iter().filter(|word| *word != file);
+    let others: Vec<String> = others.map(|word| in_shell(word)).collect();
+    if line.positionals().len() < 2 {
+        return None;
+    }
+    let to = match line.has("--output") {
+        true => "--output",
+        false => ">",
+    };
+    let failure = Failure::usage(format!(
+        "`{file}` does not exist, and `{switch}` takes no file name"
+    ));
+    Some(failure.help(format!(
+        "`flagred {name} {} {to} {}` writes this file",
+        others.join(" "),
+        in_shell(file)
+    )))
 }
 
 /// Recognises a command line that belongs to another command.
@@ -150,6 +186,11 @@ fn required(error: &clap::Error, program: &Command, words: &[String]) -> Vec<Str
             .command
             .get_arguments()
             .find(|argument| argument.to_string() == *shown)?;
+        let values = argument.get_possible_values();
+        if !values.is_empty() {
+            let values: Vec<&str> = values.iter().map(|value| value.get_name()).collect();
+            return Some(format!("write one of {}", values.join(", ")));
+        }
         let name = argument.get_value_names()?.first()?;
         let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
         let mut others = positionals

@@ -96,7 +96,7 @@ pub(super) const RENAMED: &[(&str, &str)] = &[
         "--output",
     ),
     (
-        "--picture --image --img --figure --png --pdf --plot --graph --save-plot",
+        "--picture --image --img --figure --png --pdf --html --plot --graph --save-plot",
         "--svg",
     ),
     ("--report --html-report", "--html"),
@@ -128,6 +128,8 @@ pub(super) const RENAMED: &[(&str, &str)] = &[
     ("-c", "--csv"),
     ("-j", "--json"),
     ("--csv --to-csv", "--output"),
+    ("--json --ndjson --json-lines", "--jsonl"),
+    ("--json", "--csv"),
     ("--output-variable --variable --show --z", "--of"),
     ("--template --based-on --like --copy", "--from"),
     ("--3d --three-d --surface3d", "--surface"),
@@ -138,6 +140,12 @@ pub(super) const RENAMED: &[(&str, &str)] = &[
     ("--jfml --xml", "--fml"),
     ("--ardupilot", "--lua"),
 ];
+
+/// Options here whose value is a file to write.
+pub(super) const WRITTEN: &[&str] = &["--output", "--svg", "--html"];
+
+/// Options here whose value is a file with the ending of the option.
+pub(super) const PICTURES: &[&str] = &["--svg", "--html"];
 
 /// Options of other programs for the file that is a positional argument here.
 pub(super) const FILES: &[&str] = &[
@@ -180,9 +188,29 @@ pub(super) const OPTIONS: &[(&str, &str, &str)] = &[
         "`flagred map RULES --csv` prints a table of values",
     ),
     (
+        "inspect",
+        "--csv --to-csv --table",
+        "`flagred convert FLIGHT --output flight.csv` writes a table",
+    ),
+    (
+        "check validate simplify learn tune identify",
+        "--csv",
+        "write `--json`",
+    ),
+    (
+        "eval dataset convert",
+        "--json",
+        "the table is CSV: leave the option out",
+    ),
+    (
         "fmt",
         "--output --out -o --stdout",
         "`fmt` formats files in place; to keep the original, write `flagred fmt - < IN.yaml > OUT.yaml`",
+    ),
+    (
+        "fmt",
+        "--write --fix --in-place --inplace -i -w",
+        "`fmt` formats files in place: leave the option out",
     ),
     (
         "check",

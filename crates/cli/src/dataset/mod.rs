@@ -47,7 +47,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "DEG", value_parser = numbers::positive, default_value_t = CRITICAL_ERROR_DEG)]
     critical: f64,
 
-    /// The file to write [default: standard output]
+    /// The file to write, replaced if it exists [default: standard output]
     #[arg(short, long, value_name = "OUT.csv", value_parser = output::csv_path)]
     output: Option<PathBuf>,
 }

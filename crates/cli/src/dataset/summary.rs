@@ -29,7 +29,7 @@ pub(super) fn open(path: &Path) -> Option<Result<Table, Failure>> {
 }
 
 pub(super) fn rows(table: &Table, plan: &Plan) -> Result<FileRows, Failure> {
-    let help = "a table of flights needs it for this profile";
+    let help = "with this profile, a table of flights must contain this column";
     let error = table.header.require(ERROR, help)?;
     let crashed = table.header.column("crashed");
     let vehicle = table

@@ -12,7 +12,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use fuzzy::Engine;
+use fuzzy::{Engine, model::MembershipFunction};
 
 use self::tally::Tally;
 
@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
     )]
     points: PathBuf,
 
-    /// The file to write [default: standard output]
+    /// The file to write, replaced if it exists [default: standard output]
     #[arg(short, long, value_name = "OUT.csv", default_value = "-", hide_default_value = true, value_parser = output::table_path)]
     output: PathBuf,
 
@@ -50,8 +50,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "COLUMN", value_delimiter = ',')]
     with: Vec<ExplanationColumn>,
 
-    /// An input that is known up to a half-width, a number or a column: `heat=0.5`; may be repeated.
-    /// Adds an interval of each output that contains its values for all inputs within
+    /// The half-width of an uncertain input, as a number or a column: `heat=0.5`; may be repeated.
+    /// Adds an interval of each output, which contains its values for all inputs within the half-widths
     #[arg(long, value_name = "INPUT=HALF_WIDTH", value_parser = table::pair)]
     uncertain: Vec<(String, String)>,
 
@@ -200,6 +200,21 @@ impl Plan {
             // A row that begins like a comment is quoted.
             .comment(Some(b'#'))
             .from_writer(buffer)
+    }
+
+    /// Returns whether a term of an output is a formula.
+    fn has_formula(&self, output: &str) -> bool {
+        let mut outputs = self.engine.model().outputs.iter();
+        let output = outputs.find(|known| known.variable.name == output);
+        output.is_some_and(|output| {
+            let mut terms = output.variable.terms.iter();
+            terms.any(|term| {
+                matches!(
+                    term.membership_function,
+                    MembershipFunction::Function { .. }
+                )
+            })
+        })
     }
 
     /// The header of the output.

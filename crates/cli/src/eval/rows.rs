@@ -7,7 +7,7 @@ use super::{ExplanationColumn, Plan, tally::Tally, uncertain};
 use crate::{
     failure::Failure,
     output::{cell, number_or_cell},
-    table::{Cell, Reader},
+    table::{Cell, Extent, Reader},
 };
 
 /// Maximum number of rows in a block.
@@ -87,6 +87,10 @@ impl<'p> Evaluator<'p> {
             self.problems.push(problem);
         }
         let columns: Vec<&[f64]> = self.columns.iter().map(Vec::as_slice).collect();
+        let extents = columns
+            .iter()
+            .map(|values| Extent::of(values.iter().copied()));
+        let extents = extents.collect();
         let outputs = plan.engine.output_names().len();
         self.outcomes
             .resize(block.rows * outputs, Outcome::default());
@@ -99,13 +103,15 @@ impl<'p> Evaluator<'p> {
 
         let mut tally = Tally::new(plan);
         tally.rows = block.rows as u64;
+        tally.extents = extents;
         block.written.clear();
         let mut writer = plan.writer(&mut block.written);
         let outcomes = self.outcomes.chunks_exact(outputs);
         for (row, (record, outcomes)) in records.iter().zip(outcomes).enumerate() {
             let line = record.position().map_or(0, csv::Position::line);
             let problem = self.problems.get(row).and_then(Option::as_deref);
-            tally.has_misfit |= plan.header.misfit(record.len()).is_some();
+            let is_comment = record.get(0).is_some_and(|first| first.starts_with(b"#"));
+            tally.has_misfit |= record.len() != plan.header.names.len() && !is_comment;
             match problem {
                 Some(problem) => {
                     tally.add_bad(line, problem);
@@ -125,9 +131,15 @@ impl<'p> Evaluator<'p> {
     /// Reads the inputs of a row, and returns the problem with it, if any. Unknown inputs, and all inputs of a bad row, are NaN.
     fn read(&mut self, record: &ByteRecord) -> Option<String> {
         let header = &self.plan.header;
-        let mut problems: Vec<String> = header.misfit(record.len()).into_iter().collect();
+        let misfit = header.misfit(record.len(), record.get(0));
+        let is_whole = misfit.is_none();
+        let mut problems: Vec<String> = misfit.into_iter().collect();
         for (values, column) in self.columns.iter_mut().zip(&self.plan.inputs) {
-            let text = record.get(*column).unwrap_or_default();
+            // The cells of a row with another number of cells may be in other columns.
+            let text = match is_whole {
+                true => record.get(*column).unwrap_or_default(),
+                false => b"",
+            };
             let value = match Cell::of(text) {
                 Cell::Number(number) => number,
                 Cell::Unknown => f64::NAN,
@@ -329,7 +341,10 @@ impl<'p> Evaluator<'p> {
         let unbounded = unbounded.map(|(name, _)| format!("the half-width of `{name}` is unknown"));
         let silent = engine.output_names().zip(outcomes);
         let silent = silent.filter(|(_, outcome)| outcome.state == State::NoRuleFired);
-        let silent = silent.map(|(name, _)| match outcomes.len() {
+        let silent = silent.map(|(name, outcome)| match outcomes.len() {
+            _ if outcome.coverage > 0.0 && self.plan.has_formula(name) => {
+                format!("a formula of `{name}` has no finite value")
+            }
             1 => "no rule fires".to_owned(),
             _ => format!("no rule fires for `{name}`"),
         });
@@ -342,6 +357,7 @@ impl<'p> Evaluator<'p> {
             _ => format!("no rule fires for `{name}` for some values within the half-widths"),
         });
         unknown
+            .chain(unbounded)
             .chain(silent)
             .chain(partly)
             .collect::<Vec<_>>()

@@ -1,7 +1,7 @@
 //! Counts of rows, for the report at the end.
 
 use super::{Plan, errors::Errors};
-use crate::output::say;
+use crate::{output::say, table::Extent};
 
 /// Maximum number of bad rows that are reported individually.
 const SHOWN: usize = 20;
@@ -52,6 +52,8 @@ pub(super) struct Tally {
     pub(super) silent: Vec<RowCount>,
     /// For each input: rows in which it is outside its range.
     pub(super) clamped: Vec<RowCount>,
+    /// For each input: the extent of its values.
+    pub(super) extents: Vec<Extent>,
     /// For each output: its errors against measured values.
     pub(super) errors: Vec<Errors>,
 }
@@ -66,6 +68,7 @@ impl Tally {
             unknown: RowCount::default(),
             silent: vec![RowCount::default(); plan.engine.output_names().len()],
             clamped: vec![RowCount::default(); plan.engine.input_names().len()],
+            extents: vec![Extent::NONE; plan.engine.input_names().len()],
             errors: vec![Errors::default(); plan.engine.output_names().len()],
         }
     }
@@ -90,6 +93,9 @@ impl Tally {
         }
         for (rows, later) in self.clamped.iter_mut().zip(later.clamped) {
             rows.merge(later);
+        }
+        for (extent, later) in self.extents.iter_mut().zip(later.extents) {
+            *extent = extent.and(later);
         }
         for (errors, later) in self.errors.iter_mut().zip(later.errors) {
             errors.merge(later);
@@ -135,8 +141,12 @@ impl Tally {
         }
         for (output, rows) in plan.engine.output_names().zip(&self.silent) {
             if rows.count > 0 {
+                let why = match plan.has_formula(output) {
+                    true => "no rule fires, or a formula has no finite value",
+                    false => "no rule fires",
+                };
                 say(&format!(
-                    "`{output}` has no value in {}: no rule fires ({})",
+                    "`{output}` has no value in {}: {why} ({})",
                     of(*rows),
                     first(*rows)
                 ));
@@ -145,7 +155,13 @@ impl Tally {
         for (output, errors) in plan.engine.output_names().zip(&self.errors) {
             errors.say(output);
         }
-        for (input, rows) in plan.engine.model().inputs.iter().zip(&self.clamped) {
+        let inputs = &plan.engine.model().inputs;
+        for (input, extent) in inputs.iter().zip(&self.extents) {
+            if let Some(warning) = extent.warning(input) {
+                say(&warning);
+            }
+        }
+        for (input, rows) in inputs.iter().zip(&self.clamped) {
             if rows.count > 0 {
                 say(&format!(
                     "`{}` is outside its range from {} to {} in {} and clamped to it ({})",

@@ -55,7 +55,7 @@ pub(crate) struct Arguments {
     /// Write a rule set as FML, for JFML and other programs of IEEE 1855
     #[arg(long, group = "language")]
     fml: bool,
-    /// Drop what the format cannot express, in Rust and C also `samples`; results may differ
+    /// Leave out what the format cannot express, also whole rules, in Rust and C also `samples`; results may differ
     #[arg(long, conflicts_with = "lua")]
     lossy: bool,
     /// A profile (for Rust, C, Lua) or a rule set (for all but Lua): `flagred`, `flagred-paper`, `flagred-battery`, or a file
@@ -70,7 +70,7 @@ pub(crate) struct Arguments {
         hide_default_value = true
     )]
     output: PathBuf,
-    /// Replace a rule set of another program if it exists
+    /// Replace a rule set of another program if it exists; code is always replaced
     #[arg(long)]
     force: bool,
 }
@@ -97,6 +97,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     let output = Files::reading(&loaded.files)?.output(&arguments.output, Replace::Yes)?;
     output.write(&profile_code(&loaded.estimator, arguments.language())?)?;
+    arguments.tell_built_in("profile");
     Ok(Exit::Clean)
 }
 
@@ -163,6 +164,17 @@ impl Arguments {
         })
     }
 
+    /// Reports that a file contains what is exported if no file is named.
+    fn tell_built_in(&self, what: &str) {
+        if self.file == profile::DEFAULT && self.output != Path::new("-") {
+            let written = self.output.display();
+            say(&format!(
+                "wrote `{written}`: the built-in {what} `{}`",
+                self.file
+            ));
+        }
+    }
+
     /// Returns the language, if no other program's format was chosen.
     fn language(&self) -> Language {
         match (self.rust, self.c) {
@@ -199,6 +211,7 @@ fn to_program(arguments: &Arguments, format: Format) -> Result<Exit, Failure> {
         Ok(written) => {
             tell(&written.findings);
             output.write(&written.text)?;
+            arguments.tell_built_in("rule set");
             Ok(Exit::Clean)
         }
         Err(findings) => {
@@ -208,7 +221,12 @@ fn to_program(arguments: &Arguments, format: Format) -> Result<Exit, Failure> {
                 arguments.file,
                 format.name()
             );
-            Err(Failure::unreadable(message).help("`--lossy` drops what the format cannot express"))
+            let failure = Failure::unreadable(message);
+            let is_lossy = flagred_interchange::write(model, format, Losses::Accept).is_ok();
+            Err(match is_lossy {
+                true => failure.help("`--lossy` leaves out what the format cannot express"),
+                false => failure,
+            })
         }
     }
 }

@@ -94,7 +94,7 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 5, value_name = "COUNT", value_parser = whole(2_u32, 100))]
     folds: u32,
 
-    /// Skip the cross-validation of the whole search
+    /// Skip cross-validation
     #[arg(long)]
     no_validation: bool,
 
@@ -232,12 +232,8 @@ fn columns(arguments: &Arguments, table: &Table) -> Result<(Vec<String>, Vec<Str
         } else {
             "--input"
         };
-        let options: Vec<String> = joined
-            .split(',')
-            .map(|name| format!("{option} {name}"))
-            .collect();
         let failure = Failure::usage(format!("`{joined}` is several columns"));
-        return Err(failure.help(format!("repeat the option: `{}`", options.join(" "))));
+        return Err(failure.help(rows::repeated(option, joined)));
     }
     if !arguments.input.is_empty() {
         return Ok((arguments.input.clone(), Vec::new()));
@@ -275,21 +271,11 @@ fn has_numbers(arguments: &Arguments, table: &Table) -> Result<(), Failure> {
     let column = arguments
         .format
         .columns(&[&arguments.target], &table.header)?;
-    let mut cells = (0..table.len()).map(|row| {
-        let text = column.first().map_or("", |column| table.text(row, *column));
-        Cell::of(text.as_bytes())
-    });
-    if table.len() == 0 || cells.any(|cell| matches!(cell, Cell::Number(_))) {
-        return Ok(());
-    }
-    let message = format!("`{}` contains no number", arguments.target);
-    let first = column.first().map_or("", |column| table.text(0, *column));
-    if first.starts_with(|c: char| c.is_ascii_digit()) {
-        return Err(Failure::unreadable(message).help(Cell::problem(first.as_bytes())));
-    }
-    Err(Failure::unreadable(message).help(
-        "for two classes write 0 and 1; `FuzzyClassifier` of the Python package supports words and more than two classes",
-    ))
+    let help = "for two classes write 0 and 1; `FuzzyClassifier` of the Python package supports words and more than two classes";
+    let column = column
+        .first()
+        .map(|column| table.has_numbers(*column, help));
+    column.unwrap_or(Ok(()))
 }
 
 /// Returns the usable rows as columns, and the reasons why other rows cannot be used.

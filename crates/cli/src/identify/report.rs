@@ -111,12 +111,12 @@ fn worth(
         validation.folds
     )?;
     let ratio = match validation.ratio {
-        ratio if ratio.value < 100.0 => format!("{} of it", figure(&ratio)),
-        _ => "over 100 times as large".to_owned(),
+        ratio if ratio.value < 100.0 => format!("the first is {} of it", figure(&ratio)),
+        _ => "the first is over 100 times as large".to_owned(),
     };
     writeln!(
         out,
-        "            {} of a linear regression on all columns; the first is {ratio}",
+        "            {} of a linear regression on all columns; {ratio}",
         figure(&validation.linear)
     )?;
     writeln!(out, "            {} of the mean", figure(&validation.mean))?;

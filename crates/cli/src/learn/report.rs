@@ -112,7 +112,7 @@ pub(super) fn words(
     match &outcome.errors {
         None => {}
         Some(errors) if errors.rows == 0 => {
-            writeln!(out, "error      unknown: too few rows to leave any out")?;
+            writeln!(out, "error      unknown: too few rows for cross-validation")?;
         }
         Some(errors) => writeln!(
             out,
@@ -123,7 +123,7 @@ pub(super) fn words(
     if let Some(gaps) = &outcome.gaps {
         writeln!(
             out,
-            "gaps       {} rules left out one by one; error of the filled cells on the rows there",
+            "gaps       {} rules left out one by one; error of the interpolation on the rows of these rules",
             gaps.rules
         )?;
         writeln!(

@@ -61,7 +61,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "OUTPUT")]
     of: Option<String>,
 
-    /// The file to write [default: standard output]
+    /// The file to write, replaced if it exists [default: standard output]
     #[arg(short, long, value_name = "FILE", value_parser = output::text_path)]
     output: Option<PathBuf>,
 
@@ -168,7 +168,14 @@ fn axis(text: &str) -> Result<AxisChoice, String> {
             name: name.to_owned(),
             part: Some(part),
         }),
-        None => Err("write `INPUT` or `INPUT:LOW..HIGH`".to_owned()),
+        None => {
+            let ends = part.split(['-', ',', ':']).map(str::trim);
+            let ends: Vec<&str> = ends.filter(|end| end.parse::<f64>().is_ok()).collect();
+            Err(match ends.as_slice() {
+                [low, high] => format!("write `{name}:{low}..{high}`"),
+                _ => "write `INPUT` or `INPUT:LOW..HIGH`".to_owned(),
+            })
+        }
     }
 }
 
@@ -176,7 +183,14 @@ fn hold(text: &str) -> Result<(String, f64), String> {
     let (name, value) = text.split_once('=').ok_or("write `INPUT=VALUE`")?;
     match value.trim().parse::<f64>() {
         Ok(value) if value.is_finite() => Ok((name.trim().to_owned(), value)),
-        _ => Err(format!("`{value}` is not a finite number")),
+        _ if value.contains('=') => Err(format!(
+            "repeat the option: `--hold {}`",
+            text.replace(',', " --hold ")
+        )),
+        _ => Err(match fuzzy::tree::number_advice(value) {
+            Some(advice) => format!("`{value}` is not a number: {advice}"),
+            None => format!("`{value}` is not a finite number"),
+        }),
     }
 }
 
@@ -209,7 +223,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let output = files.optional(arguments.output.as_ref())?;
     let evaluated = evaluate(arguments)?;
     if let Some(table) = &arguments.check {
-        return check::against(table, &evaluated);
+        let write = || {
+            let (model, table) = (arguments.model.display(), table.display());
+            format!("`flagred map {model} --csv --output {table}` writes it")
+        };
+        return check::against(table, &evaluated).map_err(|failure| match table.exists() {
+            true => failure,
+            false => failure.help(write()),
+        });
     }
     if let Some(name) = arguments.output.as_ref().and_then(|path| path.to_str())
         && evaluated.engine.output_names().any(|output| output == name)

@@ -21,8 +21,12 @@ pub(super) fn axes(arguments: &Arguments, evaluated: &MapSource) -> Result<Axes,
     let model = evaluated.engine.model();
     let unknown = |name: &str| {
         let inputs = model.inputs.iter().map(|input| input.name.as_str());
-        Failure::usage(format!("the rule set has no input `{name}`"))
-            .help_if(fuzzy::diagnostic::suggest(name, inputs))
+        Failure::usage(format!("the rule set has no input `{name}`")).help_if(
+            match name.split_once(',') {
+                Some((x, y)) => Some(format!("write `--x {} --y {}`", x.trim(), y.trim())),
+                None => fuzzy::diagnostic::suggest(name, inputs),
+            },
+        )
     };
     let index = |name: &str| {
         let found = model.inputs.iter().position(|input| input.name == name);

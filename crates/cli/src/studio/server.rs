@@ -106,13 +106,13 @@ impl Server {
 
     fn answer<S: Read>(&self, request: &mut Request<S>) -> Result<Response<'_>, Refusal> {
         if request.header("host").as_deref() != Some(&self.authority) {
-            return Err(Status::FORBIDDEN.says("this host is not served here"));
+            return Err(Status::FORBIDDEN.says("requests under this host name are refused"));
         }
         let own = format!("http://{}", self.authority);
         if request.header("origin").is_some_and(|origin| origin != own) {
-            return Err(Status::FORBIDDEN.says("other pages have no access"));
+            return Err(Status::FORBIDDEN.says("requests from other pages are refused"));
         }
-        let unknown = || Status::NOT_FOUND.says("nothing is here");
+        let unknown = || Status::NOT_FOUND.says("there is nothing at this address");
         let path = request.path.strip_prefix('/').ok_or_else(unknown)?;
         let (first, rest) = path.split_once('/').ok_or_else(unknown)?;
         let is_page = first == self.token;
@@ -122,7 +122,7 @@ impl Server {
             ("api/file", "GET" | "HEAD") if is_page => self.read(request),
             ("api/file", "PUT") if is_page => self.save(request),
             ("" | "api/file", _) if is_page => {
-                Err(Status::METHOD_NOT_ALLOWED.says("this cannot be done here"))
+                Err(Status::METHOD_NOT_ALLOWED.says("this method is not supported at this address"))
             }
             _ => Err(unknown()),
         }

@@ -1,6 +1,6 @@
 //! The numbers in the cells of a table.
 
-use fuzzy::diagnostic::quoted;
+use fuzzy::{diagnostic::quoted, tree::number_advice};
 
 /// The number in a cell, if any.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,33 +35,12 @@ impl Cell {
         match text.parse::<f64>() {
             Ok(_) => format!("`{shown}` is not a finite number"),
             Err(_) if text.is_empty() => "the cell is empty".to_owned(),
-            Err(_) => match advice(&text) {
+            Err(_) => match number_advice(&text) {
                 Some(advice) => format!("`{shown}` is not a number: {advice}"),
                 None => format!("`{shown}` is not a number"),
             },
         }
     }
-}
-
-/// Returns advice for a number with a decimal comma, separators of thousands or a unit.
-fn advice(text: &str) -> Option<String> {
-    if let Some((whole, thousands)) = text.split_once(',')
-        && thousands.len() == 3
-    {
-        let joined = format!("{whole}{thousands}");
-        if joined.parse::<f64>().is_ok() {
-            return Some(format!(
-                "write `{joined}`, or `{whole}.{thousands}` if the comma is a decimal mark"
-            ));
-        }
-    }
-    if text.contains(',') && text.replacen(',', ".", 1).parse::<f64>().is_ok() {
-        return Some("the decimal mark is a point".to_owned());
-    }
-    let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.".contains(c)))?;
-    let (number, unit) = text.split_at_checked(end)?;
-    let is_unit = !unit.contains(|c: char| c.is_ascii_digit());
-    (number.parse::<f64>().is_ok() && is_unit).then(|| format!("write `{number}`, without a unit"))
 }
 
 #[cfg(test)]
@@ -91,7 +70,7 @@ mod tests {
             ("1e999", "`1e999` is not a finite number"),
             (
                 "20,5",
-                "`20,5` is not a number: the decimal mark is a point",
+                "`20,5` is not a number: write a decimal point: `20.5`",
             ),
             (
                 "1,000",
@@ -99,7 +78,7 @@ mod tests {
             ),
             (
                 "15.48 %",
-                "`15.48 %` is not a number: write `15.48`, without a unit",
+                "`15.48 %` is not a number: write `15.48`, or `0.1548` if the value is a share",
             ),
             ("2-3", "`2-3` is not a number"),
             ("a,b", "`a,b` is not a number"),

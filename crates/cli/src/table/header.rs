@@ -93,9 +93,13 @@ impl Header {
         }
     }
 
-    /// Returns the problem of a row with `cells` cells, if any.
-    pub(crate) fn misfit(&self, cells: usize) -> Option<String> {
+    /// Returns the problem of a row with `cells` cells, if any; `first` is the first one.
+    pub(crate) fn misfit(&self, cells: usize, first: Option<&[u8]>) -> Option<String> {
         let expected = self.names.len();
+        let is_comment = cells < expected && first.is_some_and(|first| first.starts_with(b"#"));
+        if is_comment {
+            return Some("comments are allowed only above the header".to_owned());
+        }
         (cells != expected).then(|| {
             format!(
                 "{cells} cell{}, but the header has {expected}",

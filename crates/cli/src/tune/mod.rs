@@ -154,7 +154,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let resumed = resumed(arguments, original, &settings)?;
     let begun = resumed.as_ref().unwrap_or(original);
     let (data, refused) = data(arguments, begun)?;
-    let failed = |error: TuneError| failure(&name, original, &error);
+    let failed = |error: TuneError| match &error {
+        TuneError::Unknown { name: unknown } if unknown.contains(',') => {
+            let option = if arguments.only.contains(unknown) {
+                "--only"
+            } else {
+                "--fix"
+            };
+            failure(&name, original, &error).help(rows::repeated(option, unknown))
+        }
+        _ => failure(&name, original, &error),
+    };
 
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
@@ -192,6 +202,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         curve,
         is_resumed: resumed.is_some(),
     };
+    if let Some(warning) = warning(&outcome) {
+        output::say(&warning);
+    }
     let mut texts = vec![(
         &output,
         report::rule_set(arguments, &outcome, source.text())?,
@@ -239,17 +252,70 @@ fn settings(arguments: &Arguments) -> Result<Settings, Failure> {
 fn data(arguments: &Arguments, model: &Model) -> Result<(Data, Vec<String>), Failure> {
     let read = rows::read(&arguments.rows, model)?;
     let read = rows::in_range(read, model);
+    outcomes(arguments, model, &read)?;
     let (data, refused) = rows::in_columns(read, model.inputs.len(), arguments.loss());
     if !refused.is_empty() && (!arguments.rows.rewrite.format.skip_bad_rows || data.is_empty()) {
-        let failure = rows::refuse(&refused, refused.len() + data.truths.len(), "used");
-        return Err(match arguments.loss() {
-            Loss::Squared => failure,
-            Loss::Log | Loss::Ranking => failure.help(
-                "`log` and `ranking` are for outcomes of 0 and 1; for other values use `--loss squared`, or skip rows with `--skip-bad-rows`",
-            ),
-        });
+        let rows = refused.len() + data.truths.len();
+        return Err(rows::refuse(&refused, rows, "used"));
     }
     Ok((data, refused))
+}
+
+/// Refuses rows whose outputs are not outcomes, if the loss needs these.
+fn outcomes(arguments: &Arguments, model: &Model, read: &rows::Data) -> Result<(), Failure> {
+    let truths = read
+        .rows
+        .iter()
+        .filter_map(|(row, _)| row.values.last().copied());
+    let others = truths
+        .clone()
+        .filter(|truth| ![0.0, 1.0].contains(truth))
+        .count();
+    let skips = arguments.rows.rewrite.format.skip_bad_rows && others < read.rows.len();
+    if arguments.loss() == Loss::Squared || others == 0 || skips {
+        return Ok(());
+    }
+    let output = model.measured_output();
+    let output = output.and_then(|output| model.outputs.get(output));
+    let name = output.map_or("", |output| output.variable.name.as_str());
+    let ends = truths.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), truth| {
+        (low.min(truth), high.max(truth))
+    });
+    let message = format!(
+        "the values of `{name}` are from {} to {}, but `--loss {}` is for outcomes of 0 and 1",
+        ends.0,
+        ends.1,
+        rows::word(&arguments.loss)
+    );
+    let failure = Failure::unreadable(message);
+    Err(match others < read.rows.len() {
+        true => failure.help(
+            "for other values use `--loss squared`, or leave their rows out with `--skip-bad-rows`",
+        ),
+        false => failure.help("for other values use `--loss squared`"),
+    })
+}
+
+/// Returns a warning if the rows do not support the numbers that moved.
+fn warning(outcome: &TuneOutcome) -> Option<String> {
+    let (rows, moved) = (outcome.rows, outcome.tuned.moved.len());
+    let plural = if rows == 1 { "" } else { "s" };
+    let few = format!("{rows} row{plural} for {moved} numbers that moved");
+    let worse = outcome
+        .validation
+        .as_ref()
+        .filter(|it| it.after.value > it.before.value);
+    let why = match worse {
+        Some(it) => format!(
+            "the error on rows left out rises from {:.3} to {:.3}",
+            it.before.value, it.after.value
+        ),
+        None if rows < moved => few,
+        None => return None,
+    };
+    Some(format!(
+        "warning: {why}: add rows, or move fewer numbers with `--only`"
+    ))
 }
 
 /// Returns the rule set with the numbers of a checkpoint, if that exists. It must not differ in anything else.
@@ -293,9 +359,7 @@ fn resumed(
 
 fn failure(name: &str, model: &Model, error: &TuneError) -> Failure {
     let help = match error {
-        TuneError::Outputs { .. } => {
-            "tune a rule set with one of these outputs and those that it reads"
-        }
+        TuneError::Outputs { .. } => "keep one of these outputs, and the outputs that it reads",
         TuneError::Type2 => "remove the lower membership functions for tuning",
         TuneError::Unknown { .. } => "name a variable, or a term as `variable.term`",
         TuneError::NothingMoves => {

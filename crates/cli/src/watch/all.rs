@@ -359,7 +359,10 @@ impl<'e> LiveOutput<'e> {
                     dropped_lines: dropped,
                 });
             }
-            _ => lines::words(now_s, &format!("{worst} at worst of {vehicles} vehicles")),
+            _ => lines::words(
+                now_s,
+                &format!("worst verdict {worst} of {vehicles} vehicles"),
+            ),
         };
         self.printer.print(text);
     }

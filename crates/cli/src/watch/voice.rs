@@ -137,7 +137,7 @@ pub(crate) fn status(level: Level, text: &str) -> MavMessage {
 /// since the alarm was raised.
 pub(crate) fn say(level: Level, update: &Update, finding: Option<(&Finding, &Words)>) -> String {
     if level > Level::Good && finding.is_none() {
-        return format!("{PREFIX}{level} stays: motors not as before");
+        return format!("{PREFIX}{level} stays: motor balance is off");
     }
     let elevated = || ("elevated", update.elevated_risk_pct);
     let risk = || ("risk", update.risk.ok().map(|estimate| estimate.risk_pct));

@@ -110,7 +110,7 @@ pub(crate) fn head(evaluation: &Evaluation) -> Vec<String> {
     ];
     if first.by_kind.iter().any(|(kind, _)| kind == APART) {
         lines.push(format!(
-            "flights of kind `{APART}` are not in these figures, only under `by kind`: their errors are commanded"
+            "flights of kind `{APART}` are not in these figures, only under `by kind`: their attitude errors are commanded on purpose"
         ));
     }
     lines
@@ -144,7 +144,7 @@ fn areas(evaluation: &Evaluation) -> Table {
             columns.push(column("quiet", 20));
             columns.push(column("after 10 s of quiet", 20));
             columns.push(column("within a flight", 25));
-            note + "; within a flight: mean over the flights (their number) with critical steps and others"
+            note + "; within a flight: mean over the flights (their number) with both critical and other steps"
         }
         false => note,
     };

@@ -46,6 +46,10 @@ pub(super) fn read_header(input: &mut Input<'_>) -> Result<(Vec<HeaderLine>, u64
             next = input.fill_buf().map_err(io_error)?;
         }
         if !matches!(next.first(), Some(b'#' | b'\r' | b'\n')) {
+            if let Some((key, value)) = entry_without_sign(next) {
+                let help = format!("write `# {key}: {value}`");
+                return Err(problem(lines + 1, "a header line begins with `#`", &help));
+            }
             return Ok((header, lines));
         }
         let mut text = Vec::new();
@@ -68,6 +72,15 @@ pub(super) fn read_header(input: &mut Input<'_>) -> Result<(Vec<HeaderLine>, u64
             });
         }
     }
+}
+
+/// The key and the value of a header line without `#`, at the start of a text.
+pub(super) fn entry_without_sign(text: &[u8]) -> Option<(String, String)> {
+    let line = text.split(|byte| *byte == b'\n').next()?;
+    let line = String::from_utf8_lossy(line.strip_prefix(BOM).unwrap_or(line));
+    let (key, value) = line.split_once([':', '='])?;
+    let is_known = KEYS.contains(&key.trim());
+    is_known.then(|| (key.trim().to_owned(), value.trim().to_owned()))
 }
 
 /// The value of `written_by` in the files that this crate writes.
@@ -122,16 +135,30 @@ pub(super) fn apply_header(
                 return Err(problem(line_of(key), text, help));
             }
         }
+        // For example `pwm_min_us` in place of `pwm_low_us`.
+        let stem = low.split('_').next();
+        let mut others = header
+            .iter()
+            .filter(|entry| !KEYS.contains(&entry.key.as_str()));
+        let other =
+            others.find(|entry| entry.key.contains('_') && entry.key.split('_').next() == stem);
+        let help = |missing: &str| match other {
+            Some(entry) => format!(
+                "write `{missing}` in place of `{}` in line {}",
+                entry.key, entry.line
+            ),
+            None => "write both or neither".to_owned(),
+        };
         let (low_value, high_value) = match (value(low)?, value(high)?) {
             (Some(low_value), Some(high_value)) => (low_value, high_value),
             (None, None) => return Ok(None),
             (Some(_), None) => {
                 let text = format!("`{low}` is given without `{high}`");
-                return Err(problem(line_of(low), text, "write both or neither"));
+                return Err(problem(line_of(low), text, &help(high)));
             }
             (None, Some(_)) => {
                 let text = format!("`{high}` is given without `{low}`");
-                return Err(problem(line_of(high), text, "write both or neither"));
+                return Err(problem(line_of(high), text, &help(low)));
             }
         };
         if high_value <= low_value {
@@ -264,7 +291,7 @@ pub(super) fn apply_header(
                 "`{}` is `{}`, which has {motors} motors, but there are columns `{stem}1` to `{stem}{columns}`",
                 entry.key, entry.value
             );
-            let help = "correct it, or give columns that are not motors other names";
+            let help = "correct the frame or the number of motors in this line, or rename the columns that are not motors";
             return Err(problem(entry.line, text, help));
         }
     }

@@ -72,7 +72,7 @@ impl Layout {
                 Err(problem(
                     line,
                     text,
-                    "rename the columns of the motors: small letters, without separators",
+                    "rename the columns of the motors: lower-case letters, without separators",
                 ))
             })?;
         }
@@ -83,7 +83,11 @@ impl Layout {
         motors.sort_unstable();
         if motors.len() > MOST_MOTORS {
             let text = format!("there are {} motors, more than {MOST_MOTORS}", motors.len());
-            return Err(problem(line, text, "give other columns different names"));
+            return Err(problem(
+                line,
+                text,
+                "rename the columns that are not motors",
+            ));
         }
         if let Some((0, _)) = motors.first() {
             let text = format!("there is a column `{stem}0`");

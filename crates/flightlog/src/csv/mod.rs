@@ -10,7 +10,7 @@ use std::io::{self, Read};
 
 use csv::{ByteRecord, ReaderBuilder};
 
-use self::header::{apply_header, read_header};
+use self::header::{apply_header, entry_without_sign, read_header};
 use self::layout::Layout;
 use self::rows::RowCollector;
 use crate::error::io_error;
@@ -49,7 +49,9 @@ pub(crate) fn looks_like(start: &[u8]) -> bool {
     let is_table = columns > 1
         && cells(header).all(is_name)
         && row.is_some_and(|row| cells(row).count() == columns);
-    is_table || has_times(start)
+    let is_unsigned = entry_without_sign(start).is_some();
+    let names_times = || content(start).any(|line| cells(line).any(|name| name == b"t_s"));
+    is_table || has_times(start) || (is_unsigned && names_times())
 }
 
 const BOM: &[u8] = b"\xef\xbb\xbf";

@@ -81,7 +81,7 @@ pub(super) fn geometry(flight: &Flight, class: Option<i64>) -> Option<Geometry> 
     let same = match same.is_empty() {
         true => String::new(),
         false => format!(
-            " (or {}, whose mixer spans the same space)",
+            " (or {}, which the commands do not distinguish from it)",
             same.join(", ")
         ),
     };
@@ -139,7 +139,7 @@ pub(super) fn contradiction(flight: &Flight, geometry: &Geometry) -> Option<Stri
             .filter(|(other, _)| *other < FITS && is_clearly_more(share, *other));
         if let Some((other, name)) = better {
             return Some(format!(
-                "{:.0} % of the variance of the commands is outside of its mixer, {:.0} % outside of that of {name}",
+                "its mixer leaves {:.0} % of the variance of the commands unexplained, that of {name} only {:.0} %",
                 100.0 * share,
                 100.0 * other
             ));

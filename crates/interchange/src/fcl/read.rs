@@ -242,7 +242,7 @@ impl<'r, 't> Reader<'r, 't> {
                 .outputs
                 .iter()
                 .any(|output| output.variable.name == *name);
-            if !has_terms && !self.is_cut_off {
+            if !has_terms && !self.is_cut_off && !self.draft.has_errors() {
                 let message = format!("the output `{name}` has no `DEFUZZIFY`");
                 self.draft
                     .warning("no-terms", name, message, "it is left out");

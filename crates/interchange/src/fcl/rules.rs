@@ -15,12 +15,20 @@ impl Reader<'_, '_> {
         key: &str,
         known: &'static words::Words<T>,
     ) -> Option<T> {
-        if !self.take(":") {
+        let sign = self.here();
+        let is_assignment = self.take(":=");
+        if !is_assignment && !self.take(":") {
             self.unexpected("`:`");
             return None;
         }
         let word = self.word()?;
         self.take(";");
+        if is_assignment {
+            let message = format!("expected `:` after `{key}`, found `:=`");
+            let help = format!("write `{key} : {word};`");
+            self.draft.error("fcl-syntax", sign, message, &help);
+            return None;
+        }
         if word.eq_ignore_ascii_case("none") {
             return None;
         }

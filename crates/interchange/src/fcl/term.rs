@@ -37,7 +37,7 @@ pub(super) fn read(
     let mut spans = TermSpans::default();
     spans.name = draft.span(name);
     let Some((&first, rest)) = words.split_first() else {
-        let message = format!("the term `{name}` has no shape");
+        let message = format!("the term `{name}` has no membership function");
         draft.error("no-term", name, message, "write `TERM low := TRIAN 0 1 2;`");
         return None;
     };

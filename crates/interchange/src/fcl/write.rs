@@ -299,8 +299,11 @@ fn rule_block(draft: &mut TextDraft, block: &Rules<'_>, number: &mut usize) {
                 }
             }
             None => {
-                let message = format!("rule {index} has a NOT before brackets");
-                draft.loss("not", message, "write NOT before the terms");
+                draft.leave_out(
+                    *index,
+                    "has a NOT before brackets",
+                    "write NOT before the terms",
+                );
             }
         }
     }

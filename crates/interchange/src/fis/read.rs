@@ -69,6 +69,11 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
     let Some(weighted) = kind(&mut draft, system) else {
         return draft.finish();
     };
+    let mut entries = sections.iter().flat_map(|section| &section.entries);
+    if let Some(entry) = entries.find(|entry| is_of_type2(entry.key)) {
+        type2(&mut draft, entry.key);
+        return draft.finish();
+    }
     operators(&mut draft, system, weighted);
     let inputs = Section::numbered(&sections, "Input");
     let names: Vec<&str> = inputs.iter().map(|input| name(input)).collect();
@@ -180,6 +185,22 @@ fn without_comment(line: &str) -> &str {
     line
 }
 
+/// Whether a key is that of an upper or lower membership function, such as `MF2U`.
+fn is_of_type2(key: &str) -> bool {
+    let key = key.to_ascii_uppercase();
+    let number = key
+        .strip_prefix("MF")
+        .and_then(|key| key.strip_suffix(['U', 'L']));
+    number.is_some_and(|number| number.parse::<usize>().is_ok())
+}
+
+fn type2(draft: &mut ModelDraft<'_>, part: &str) {
+    let shown = unquoted(part);
+    let message = format!("`{shown}` is of a type-2 system, which cannot be imported");
+    let help = "MATLAB's `convertToType1` makes it a system that can be read";
+    draft.error("type-2", part, message, help);
+}
+
 /// Whether the system is a Sugeno system; `None`, with an error, if its type is not supported.
 fn kind(draft: &mut ModelDraft<'_>, system: &Section<'_>) -> Option<bool> {
     let word = system.get("Type").unwrap_or("mamdani");
@@ -188,9 +209,7 @@ fn kind(draft: &mut ModelDraft<'_>, system: &Section<'_>) -> Option<bool> {
         // fuzzylite writes `tsukamoto` if the terms of outputs are monotone sets.
         "sugeno" | "tsukamoto" => Some(true),
         other if other.contains("type2") => {
-            let message = format!("`{other}` has type-2 fuzzy sets, which cannot be imported");
-            let help = "MATLAB's `convertToType1` makes it a system that can be read";
-            draft.error("type-2", word, message, help);
+            type2(draft, word);
             None
         }
         other => {

@@ -19,10 +19,16 @@ pub(super) fn read(draft: &mut ModelDraft<'_>, line: &str) {
     };
     let (inputs, outputs) = (draft.model.inputs.len(), draft.model.outputs.len());
     if parts.inputs.len() != inputs || parts.outputs.len() != outputs {
+        let count = |count: usize, what: &str| match count {
+            1 => format!("1 {what}"),
+            _ => format!("{count} {what}s"),
+        };
         let message = format!(
-            "the rule has {} and {} numbers for {inputs} inputs and {outputs} outputs",
-            parts.inputs.len(),
-            parts.outputs.len()
+            "the rule has {} for inputs and {} for outputs, but the file has {} and {}",
+            count(parts.inputs.len(), "number"),
+            count(parts.outputs.len(), "number"),
+            count(inputs, "input"),
+            count(outputs, "output")
         );
         let help = "write a number for each variable, 0 for a variable that the rule does not use";
         draft.error("rule-syntax", line, message, help);

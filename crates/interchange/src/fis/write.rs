@@ -76,10 +76,13 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<WriteResult, Findin
         match line(rule, model) {
             Ok(line) => draft.line(line),
             Err(what) => {
-                let message = format!("rule {} {what}", index + 1);
-                let help =
-                    "a rule of FIS joins one term of each input, either all by AND or all by OR";
-                draft.loss("rule", message, help);
+                let help = match what {
+                    READS_OUTPUT => "write a rule set for each output: FIS has no stages",
+                    _ => {
+                        "a rule of FIS joins one term of each input, either all by AND or all by OR"
+                    }
+                };
+                draft.leave_out(index + 1, what, help);
             }
         }
     }
@@ -221,6 +224,9 @@ fn shape(
     written
 }
 
+/// Why a rule about an output cannot be written.
+const READS_OUTPUT: &str = "has a condition about an output";
+
 /// Writes a rule: `1 -2, 3 (0.5) : 1`.
 fn line(rule: &Rule, model: &Model) -> Result<String, &'static str> {
     let rule = &rule.rule;
@@ -245,7 +251,7 @@ fn line(rule: &Rule, model: &Model) -> Result<String, &'static str> {
             .inputs
             .iter()
             .position(|input| input.name == proposition.variable.text);
-        let index = index.ok_or("has a condition about an output")?;
+        let index = index.ok_or(READS_OUTPUT)?;
         let variable = model.inputs.get(index).ok_or("names no input")?;
         let number = inputs.get_mut(index).ok_or("names no input")?;
         if *number != 0 {

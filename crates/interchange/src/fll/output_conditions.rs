@@ -42,7 +42,7 @@ pub(crate) fn replace(draft: &mut ModelDraft<'_>) {
         if resolved.is_none() || depth(&condition) > 2 * DEEPEST_NESTING {
             let message = "the rule reads outputs whose rules have too many conditions".into();
             let help = format!(
-                "conditions about outputs may become {MOST_PROPOSITIONS} propositions in all, nested {DEEPEST_NESTING} deep"
+                "conditions about outputs are replaced by those of their rules; this may give at most {MOST_PROPOSITIONS} conditions, nested {DEEPEST_NESTING} deep"
             );
             draft.error("too-large", part, message, &help);
             return;

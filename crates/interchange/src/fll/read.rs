@@ -344,9 +344,8 @@ fn blocks(draft: &mut ModelDraft<'_>, sections: &[&Section<'_>]) {
         block.description = description(section);
         block.enabled = is_enabled(draft, section);
         let and = operator(draft, section, "conjunction", words::CONJUNCTIONS);
-        block.and = and.unwrap_or_default();
         let or = operator(draft, section, "disjunction", words::DISJUNCTIONS);
-        block.or = or.unwrap_or_default();
+        (block.and, block.or) = (and.unwrap_or_default(), or.unwrap_or_default());
         // In fuzzylite 5, `activation` had the meaning of the implication.
         let old = section
             .get("activation")
@@ -371,6 +370,25 @@ fn blocks(draft: &mut ModelDraft<'_>, sections: &[&Section<'_>]) {
                         &activation::METHODS,
                     );
                 }
+            }
+        }
+        let uses = |word: &str| {
+            let mut rules = section.all("rule");
+            rules.any(|rule| {
+                rule.split(" then ")
+                    .next()
+                    .is_some_and(|it| it.contains(word))
+            })
+        };
+        for (key, word, assumed) in [
+            ("conjunction", " and ", "minimum"),
+            ("disjunction", " or ", "maximum"),
+        ] {
+            let part = section.get(key).filter(|part| !part.is_empty());
+            if part.is_none_or(|part| part == "none") && uses(word) {
+                let message = format!("a rule uses `{}`, but there is no `{key}`", word.trim());
+                let help = format!("`{assumed}` is assumed; fuzzylite refuses such an engine");
+                draft.note("assumed", part.unwrap_or(section.name), message, &help);
             }
         }
         for written in section.all("rule") {

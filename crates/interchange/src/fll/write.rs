@@ -202,8 +202,8 @@ fn rule_block(draft: &mut TextDraft, block: &Rules<'_>, model: &Model) {
                 .iter()
                 .for_each(|rule| draft.line(format!("  rule: {rule}"))),
             None => {
-                let message = format!("rule {number} has a NOT before brackets");
-                draft.loss("not", message, "fuzzylite has `not` before a term only");
+                let help = "fuzzylite has `not` before a term only";
+                draft.leave_out(*number, "has a NOT before brackets", help);
             }
         }
     }

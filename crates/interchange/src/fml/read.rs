@@ -519,7 +519,7 @@ impl Reader<'_> {
             {
                 Some(&(_, hedge)) => hedges.push(hedge),
                 None => {
-                    let message = format!("the modifier `{word}` has no counterpart");
+                    let message = format!("the modifier `{word}` is not supported");
                     let known = HEDGES.map(|(word, _)| word).join(", ");
                     self.draft.loss(
                         "unknown-hedge",

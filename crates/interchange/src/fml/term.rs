@@ -47,7 +47,7 @@ pub(super) fn read(
         );
     }
     let Some(shape) = node.children().find(Node::is_element) else {
-        let message = format!("the term `{name}` has no shape");
+        let message = format!("the term `{name}` has no membership function");
         draft.error(
             "no-term",
             part,

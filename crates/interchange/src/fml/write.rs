@@ -365,9 +365,8 @@ fn rule_base(draft: &mut TextDraft, block: &Rules<'_>, outputs: RuleBaseKind) ->
         match self::rule(rule, *number, operators, outputs) {
             Ok(element) => base.push(element.with("andMethod", and).with("orMethod", or)),
             Err(what) => {
-                let message = format!("rule {number} {what}");
                 let help = "a rule of FML joins its clauses either all by AND or all by OR";
-                draft.loss("rule", message, help);
+                draft.leave_out(*number, what, help);
             }
         }
     }

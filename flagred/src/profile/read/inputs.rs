@@ -1,10 +1,10 @@
 //! Reads the inputs of a profile: statistics over time of a signal, or of a signal combined over the motors.
 
-use alloc::{format, string::String, vec::Vec};
+use alloc::{borrow::ToOwned, format, string::String, vec::Vec};
 
 use fuzzy::{
     diagnostic::Diagnostic,
-    tree::{Entry, Fields, Node, Value},
+    tree::{Entry, Fields, Node, Value, share_of_percentage},
 };
 
 use super::{Bounds, Found, number};
@@ -113,6 +113,25 @@ fn input(
         {
             finding.help = Some(format!("exchange them: `{{{word}: {}}}`", entry.key));
         }
+        // For example `{p95: motor_margin}`.
+        if let Some(percent) = entry
+            .key
+            .strip_prefix('p')
+            .and_then(|text| text.parse::<u8>().ok())
+            && let Some(signal) = entry.value.as_text()
+            && let Some(finding) = found.iter_mut().find(|one| one.span == entry.key_span)
+        {
+            finding.help = Some(format!("write `{{percentile: {percent}, of: {signal}}}`"));
+        }
+        // For example `{std, motor_margin}`.
+        let empty = fields.entries().iter().find(|other| {
+            other.value.is_null() && other.key != entry.key && keys.contains(&other.key)
+        });
+        if let (true, Some(empty)) = (entry.value.is_null(), empty)
+            && let Some(finding) = found.iter_mut().find(|one| one.span == entry.key_span)
+        {
+            finding.help = Some(format!("write `{{{}: {}}}`", empty.key, entry.key));
+        }
     }
     let given: Vec<&str> = statistics
         .chain(with_number)
@@ -150,18 +169,14 @@ fn input(
                 && word.as_number().is_none()
             {
                 let message = format!("`{key}` takes a number, and `of` the signal");
-                let percent = word
-                    .text
-                    .strip_suffix('%')
-                    .and_then(|text| text.trim().parse::<f64>().ok());
-                let help = match (percent, fields.get("of").and_then(Node::as_text)) {
-                    (Some(percent), of) if *key == "percentile" => format!(
-                        "write `{{{key}: {percent}, of: {}}}`",
-                        of.unwrap_or("motor_margin")
-                    ),
-                    (Some(percent), of) => format!(
+                let share = share_of_percentage(&word.text);
+                let help = match (share, fields.get("of").and_then(Node::as_text)) {
+                    (Some(share), of) => format!(
                         "write `{{{key}: {}, of: {}}}`",
-                        percent / 100.0,
+                        match *key {
+                            "percentile" => word.text.trim_end_matches(['%', ' ']).to_owned(),
+                            _ => format!("{share}"),
+                        },
                         of.unwrap_or("motor_margin")
                     ),
                     (None, _) => {
@@ -234,11 +249,18 @@ fn input(
         } else {
             "mean"
         };
-        found.push(
-            Diagnostic::error("statistic", behind.span.clone(), message).help(format!(
-                "write for example `{{{key}: {{{over}: motor_command}}}}`"
-            )),
-        );
+        let signal = Signal::name_of(&signal).unwrap_or("motor_command");
+        let help = match statistic {
+            Statistic::Percentile(number) if *key == "percentile" => {
+                let percent = match number < 1.0 {
+                    true => libm::round(1e8 * number) / 1e6,
+                    false => number,
+                };
+                format!("write for example `{{{key}: {percent}, of: {{{over}: {signal}}}}}`")
+            }
+            _ => format!("write for example `{{{key}: {{{over}: {signal}}}}}`"),
+        };
+        found.push(Diagnostic::error("statistic", behind.span.clone(), message).help(help));
         return None;
     }
     Some(ProfileInput {
@@ -286,7 +308,7 @@ fn other(node: &Node, entry: &Entry, entries: &[Entry], found: &mut Found) -> Op
         Some(_) => format!("`{name}` is a ratio itself"),
         None => format!("`{name}` is not an input of this profile"),
     };
-    let help = "name another input, which is a statistic alone; the rule set need not have it. Of two signals, write `{mean: {ratio: [A, B]}}`";
+    let help = "name another input that is not a ratio; it need not be an input of the rule set. For the ratio of two signals, write `{mean: {ratio: [A, B]}}`";
     found.push(Diagnostic::error("ratio", node.span.clone(), message).help(help));
     None
 }
@@ -302,12 +324,12 @@ fn signal_name<'n>(node: &'n Node, what: &str, found: &mut Found) -> Option<&'n 
         .text
         .as_str();
     let message = if name.parse::<f64>().is_ok() {
-        format!("{what} is a name, not the number {name}")
+        format!("{what} must be a name, not the number {name}")
     } else if [" / ", " * ", " - ", " + "]
         .iter()
         .any(|sign| name.contains(sign))
     {
-        format!("{what} is a name, not a computation: `{name}`")
+        format!("{what} must be a name, not the computation `{name}`")
     } else {
         return Some(name);
     };

@@ -83,10 +83,10 @@ fn followed(fields: &Fields, key: &str, found: &mut Found) -> Option<Followed> {
         followed: count("followed")?,
     };
     if counts.followed > counts.moments {
-        let message = format!("`followed` is more than `moments` of `{key}`");
+        let message = format!("`followed` of `{key}` is greater than its `moments`");
         found.push(
             Diagnostic::error("order", node.span.clone(), message)
-                .help("`followed` counts some of the `moments`"),
+                .help("`followed` counts those of the `moments` that an attitude error followed: it is at most `moments`"),
         );
     }
     Some(counts)

@@ -92,16 +92,15 @@ pub(super) fn level(
             if let (Some(lower), Some(upper)) = (lower, upper)
                 && lower > upper
             {
-                let message = format!("{what} is held until {lower}, which is above {upper}");
+                let message = format!(
+                    "`until` of {what} is {lower}, above {upper}, at which the level is raised"
+                );
                 let help = match upper <= 1.0 && lower > 1.0 {
                     true => format!(
                         "risks are in percent: did you mean {} in place of {upper}?",
                         upper * 100.0
                     ),
-                    false => {
-                        "write a lower value in `until` than the one at which the level is raised"
-                            .into()
-                    }
+                    false => "write a lower value in `until`".into(),
                 };
                 found.push(Diagnostic::error("order", node.span.clone(), message).help(help));
             }

@@ -34,14 +34,14 @@ class Progress:
     def planned(self, counts: Counts) -> None:
         self._counts = counts
         for error in counts.damaged:
-            print(f"warning: {error}; it is rewritten", file=sys.stderr)
+            print(f"warning: {error}; the file is rewritten", file=sys.stderr)
         same = counts.listed - counts.new - counts.changed
         print(
             f"{counts.listed} logs, {_size(counts.listed_bytes)}: {counts.new} new, {counts.changed} changed, {same} done",
             file=sys.stderr,
         )
         if counts.passed_over:
-            print(f"{counts.passed_over} skipped: names that are not UTF-8, or not of files", file=sys.stderr)
+            print(f"{counts.passed_over} skipped: the name is not UTF-8, or it is not a file", file=sys.stderr)
 
     def started(self, dashboard: str) -> None:
         print(f"dashboard: {dashboard}", file=sys.stderr)
@@ -92,16 +92,16 @@ def parser() -> argparse.ArgumentParser:
     """The arguments of the command line."""
     parser = argparse.ArgumentParser(prog="python -m flagred.fleet", description="Assess fleets of flight logs.")
     commands = parser.add_subparsers(dest="command", required=True)
-    one = commands.add_parser("assess", help="assess the logs that a dataset lacks")
+    one = commands.add_parser("assess", help="assess the logs that are not in a dataset yet")
     one.add_argument("sources", nargs="+", metavar="SOURCE", help="a folder of logs, or s3://, gs://, az://")
     one.add_argument("--out", required=True, metavar="DATASET", help="the dataset: a folder, or s3://, gs://, az://")
     one.add_argument("--scheduler", metavar="ADDRESS", help="a Dask scheduler, such as tcp://HOST:8786; by default all local cores")
     one.add_argument("--workers", type=int, metavar="N", help="processes on this machine (one per core)")
     one.add_argument("--profile", default="flagred", metavar="NAME|FILE", help="profile: a shipped one or a file (flagred)")
-    one.add_argument("--step-s", type=float, default=1.0, metavar="S", help="interval of the steps, in seconds (1)")
-    one.add_argument("--recursive", action="store_true", help="read the folders below too")
-    one.add_argument("--include", action="append", metavar="PATTERN", help="names of logs, such as '*.BIN' (all formats)")
-    one.add_argument("--compare-content", action="store_true", help="read every log, and skip those with unchanged content")
+    one.add_argument("--step-s", type=float, default=1.0, metavar="S", help="time between steps, in seconds (1)")
+    one.add_argument("--recursive", action="store_true", help="also read subfolders")
+    one.add_argument("--include", action="append", metavar="PATTERN", help="only logs with such a name, such as '*.BIN' (default: every log format)")
+    one.add_argument("--compare-content", action="store_true", help="compare logs by their content instead of size and time: reads every log")
     one.add_argument("--dry-run", action="store_true", help="count the logs to assess, and write nothing")
     one = commands.add_parser("report", help="write a page about a dataset")
     one.add_argument("dataset", metavar="DATASET")

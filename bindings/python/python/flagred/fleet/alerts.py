@@ -52,7 +52,7 @@ def sentence(change: Change) -> str:
         if change.others is not None:
             others = f" Vehicles without it changed by {_signed(change.others[0])} ({_signed(change.others[1])} to {_signed(change.others[2])}) in the same time."
         return f"{when} the {OF[change.measure]} of {of} {rises} by {by}{since}, each vehicle compared with itself ({counts}).{warned}{others}"
-    steadily = "It does not change steadily" if change.is_clear else "It may also change gradually: the flights do not show which"
+    steadily = "It does not change steadily" if change.is_clear else "The change may also be gradual: the flights do not show which"
     with_cause = f" with {change.cause}" if change.cause else ""
     return f"{change.vehicles[0]} changed once, on {day}{with_cause}: its {OF[change.measure]} {rises} by {by}. {steadily} ({counts}).{warned}"
 
@@ -62,11 +62,11 @@ def advice(change: Change) -> str:
     if change.change_pct <= 0:
         return "Nothing to do."
     if change.kind == "slope":
-        return "Check propellers, motors, bearings and mounts before the next flight, first those of a motor whose command rises against the others on the page of the vehicle."
+        return "Check propellers, motors, bearings and mounts before the next flight. The page of the vehicle shows motors whose command rises relative to the others: check these first."
     if change.is_fleet and change.cause and change.cause.startswith("firmware "):
-        return "Hold back the firmware for the other vehicles. Compare gains and limits before and after, and read the reports of the worst flights since."
+        return "Do not install this firmware on the other vehicles yet. Compare gains and limits before and after, and read the reports of the worst flights since."
     if change.is_fleet and change.cause is None:
-        return "Find out what changed for all at that time: payload, task, site, pilots or weather that the logs do not report."
+        return "Find out what changed for all vehicles at that time: payload, task, site, pilots or weather that the logs do not report."
     if change.cause:
         return f"Check what was changed on {_day(change.since_s)}: {change.cause}."
     return f"Find out what happened on or before {_day(change.since_s)}: a crash, a repair, another payload or other gains."
@@ -99,7 +99,7 @@ def run_command(command: str, document: dict[str, Any]) -> None:
     """
     done = subprocess.run(command, shell=True, input=json.dumps(document).encode(), check=False)
     if done.returncode:
-        raise FleetError(f"the alert command ended with {done.returncode}: `{command}`", "the next report runs it again")
+        raise FleetError(f"the alert command failed with exit code {done.returncode}: `{command}`", "the next report runs it again")
 
 
 def _day(at_s: float) -> str:

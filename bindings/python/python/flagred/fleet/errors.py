@@ -30,7 +30,7 @@ class DamagedError(FleetError):
     @classmethod
     def missing(cls, file: str) -> DamagedError:
         """The error of a missing file, by its path in readable form."""
-        return cls(f"`{file}` is missing, but the file of the same name in `flights` refers to rows in it", _HELP)
+        return cls(f"`{file}` is missing, but flights in the file of the same name in `flights` have rows in it", _HELP)
 
 
-_HELP = "restore the file, or delete all files of its name in the dataset: `assess` then reads its logs again"
+_HELP = "restore the file, or delete all files with its name in the dataset: `assess` then reads their logs again"

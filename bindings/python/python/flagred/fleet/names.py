@@ -94,7 +94,7 @@ def view(connection: Any, names: str | os.PathLike[str] | None, only: Mapping[st
         if column not in ("vehicle", "site", "pilot"):
             raise FleetError(f"there is no filter `{column}`", "filters are `vehicle`, `site` and `pilot`")
         if column != "vehicle" and names is None:
-            raise FleetError(f"the filter `{column}` has no names to choose from", "name a CSV file with `--names`")
+            raise FleetError(f"the filter `{column}` needs a file of names", "name a CSV file with `--names`")
     keep = " AND ".join(f"{column} = {_literal(value)}" for column, value in only.items()) or "true"
     known = "coalesce(a.{0}, b.{0})"
     connection.execute(f"""

@@ -77,7 +77,7 @@ def _read(source: Place, log: Log, crashed: bool, job: Job, rows: dict[str | Non
         return True
 
     if crashed:
-        return failed("crashed", "every worker that reads it ends")
+        return failed("crashed", "the log crashes every worker that reads it")
     try:
         content: str | bytes = log.path
         if not source.is_local or job.compare_content:

@@ -33,8 +33,8 @@ def redo(out: Place, catalog: Catalog, dry_run: bool) -> tuple[DamagedError, ...
         unlisted = catalog.unlisted(path)
         if unlisted:
             raise DamagedError(
-                f"{error}; `{unlisted[0]}` of its logs is not listed",
-                "restore the file, name the sources of all its logs, or delete all files of its name in the dataset, with the rows of logs that are gone",
+                f"{error}; its log `{unlisted[0]}` is not in the given sources",
+                "restore the file, or name the sources of all its logs, or delete all files with its name in the dataset (the rows of logs that no longer exist are then lost)",
             )
     for path in damaged:
         for kind in () if dry_run else KINDS[::-1]:

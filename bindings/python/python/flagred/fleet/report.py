@@ -170,7 +170,7 @@ def _body(
     ]
     parts += [section(title, table(answers[question], columns, none)) for title, question, columns, none in SECTIONS]
     parts.append(
-        "<p class=soft>Smaller numbers are 95 % intervals. A change is listed if a fleet without changes would show it with a probability of at most "
+        "<p class=soft>Numbers in small print are 95 % intervals. A change is listed if a fleet without changes would show it with a probability of at most "
         f"{100 * LEVEL:g} %; flights of one day and vehicle count as one, and are compared at equal wind and time in the air. Only flights that "
         "were judged for at least 10 s count.</p>"
     )

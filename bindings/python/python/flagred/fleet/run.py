@@ -88,7 +88,7 @@ def assess(
     step_s
         The interval of the steps of the risk over time, in seconds.
     recursive
-        Whether to read the folders below too.
+        Whether to also read subfolders.
     include
         Patterns of the names of logs.
     compare_content

@@ -76,7 +76,7 @@ class Place:
             yield _log(found)
             return
         if found.type == pafs.FileType.NotFound:
-            help = "the folder, or the keys before the logs, must exist"
+            help = "the folder must exist; in object storage, at least one key must begin with this path"
             raise FleetError(f"there is no `{self.shown(self.root)}`", help)
         wanted = matcher(include)
         # Keeps only the folders, so that the listings can be released one by one.

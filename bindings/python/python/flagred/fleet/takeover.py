@@ -40,7 +40,7 @@ def _run(out: Place) -> str:
     try:
         run: str = json.loads(content)["run"]
     except (ValueError, KeyError, TypeError) as error:
-        help = "run `assess` for the dataset, which writes it anew, or delete it while no run writes"
+        help = "run `assess` for the dataset, which replaces the file, or delete the file while no run is active"
         raise DamagedError(f"`{out.shown(out.file(RUN))}` is damaged: {error}", help) from error
     return run
 

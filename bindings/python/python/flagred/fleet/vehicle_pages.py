@@ -119,7 +119,7 @@ def _calm(rows: Sequence[Row]) -> str:
 def _over_time(rows: Sequence[Row], parts: Sequence[tuple[float, str]]) -> str:
     dated = [row for row in rows if row["start_s"] is not None]
     if not dated:
-        return "<p class=soft>No log reports its date, so there is no picture over time.</p>"
+        return "<p class=soft>No log reports its date, so the risk over time cannot be drawn.</p>"
     marks = [Mark(at_s, part) for at_s, part in parts if dated[0]["start_s"] <= at_s <= dated[-1]["start_s"]]
     firmware = None
     for row in dated:
@@ -137,7 +137,7 @@ def _over_time(rows: Sequence[Row], parts: Sequence[tuple[float, str]]) -> str:
             margins.append(Point(row["start_s"], margin, margin, margin, "motor", words))
     return (
         "<h2>Risk of each flight</h2>"
-        + chart("Highest risk of each flight by verdict, and down to its mean risk, %", risks, marks)
+        + chart("Highest risk of each flight (colour: verdict), with a line down to its mean risk, %", risks, marks)
         + chart("Margin of the weakest motor of each flight, % of its range", margins, marks, large=False)
     )
 
@@ -161,17 +161,17 @@ def _motors(rows: Sequence[Row], vehicles: int) -> str:
         found.append({"motor": motor + 1, "least": int((least == motor).sum()), "margin": 100 * margins[:, motor].mean(), "drift": drift})
     columns: Sequence[Column] = (
         number("Motor", "motor"),
-        number("Least margin, flights", "least"),
+        number("Flights in which it had the least margin", "least"),
         number("Mean margin, %", "margin", 1),
-        ("Command against the others, % a week", "n", lambda row: "NA" if row["drift"] is None else f"{known(row['drift'][0], 2)}<small>{known(row['drift'][1], 2)} to {known(row['drift'][2], 2)}</small>"),
+        ("Command relative to the other motors, % per week", "n", lambda row: "NA" if row["drift"] is None else f"{known(row['drift'][0], 2)}<small>{known(row['drift'][1], 2)} to {known(row['drift'][2], 2)}</small>"),
     )
-    note = "<p class=soft>A motor whose command rises against the others gives less thrust than before: propeller, motor, speed controller.</p>"
+    note = "<p class=soft>A motor whose command rises relative to the others gives less thrust than before: check propeller, motor and speed controller.</p>"
     surely = NormalDist().inv_cdf(1 - LEVEL / (motors * vehicles)) / NormalDist().inv_cdf(0.975)
     worst = max(found, key=lambda row: row["drift"][0] if row["drift"] else -np.inf)
     if worst["drift"] is None or worst["drift"][0] - surely * (worst["drift"][0] - worst["drift"][1]) <= 0:
         return table(found, columns, "") + note
     slope, low, high = worst["drift"]
-    rises = f"The command of motor {worst['motor']} rises against the others by {slope:.2f} % of its range a week ({low:.2f} to {high:.2f}). Check it first."
+    rises = f"The command of motor {worst['motor']} rises by {slope:.2f} % of its range per week, relative to the others ({low:.2f} to {high:.2f}). Check it first."
     return f"<ul class=findings><li class=warn>{rises}</li></ul>" + table(found, columns, "") + note
 
 

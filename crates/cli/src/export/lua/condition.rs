@@ -141,8 +141,7 @@ impl<'m> Expressions<'m> {
 }
 
 fn operator(operator: &str, known: &'static str) -> UnsupportedFeature {
-    let message =
-        format!("the script does not support the operator of the rule set for {operator}");
+    let message = format!("the script does not support the rule set's function for {operator}");
     match known {
         "minimum and product" => {
             UnsupportedFeature::new(message, "it supports `and: minimum` and `and: product`")

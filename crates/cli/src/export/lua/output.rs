@@ -59,7 +59,7 @@ impl Coefficients {
             )),
             _ => Err(UnsupportedFeature::new(
                 format!(
-                    "output `{name}` has neither the centroid of a sum of products nor that of minimum and maximum over a partition; the script supports no others"
+                    "the script does not support the implication, aggregation or defuzzifier of output `{name}`"
                 ),
                 "choose `implication: product` and `aggregation: sum`, or a `partition` with minimum and maximum, and the centroid",
             )),

@@ -64,7 +64,7 @@ pub(super) fn fill(
         if !stage.table.blocks.is_empty() {
             return Err(UnsupportedFeature::new(
                 "the rule set has activation methods or blocks with different operators, which the script does not support".into(),
-                "the script supports rules that all fire, with one AND and one OR",
+                "remove the activation methods, and give all rules the same operators",
             ));
         }
         let (mut fires, mut values) = (Vec::new(), Vec::new());

@@ -98,7 +98,7 @@ local function read_geometry()
     end
   end
   if #factors ~= motors or known ~= motors then
-    gcs:send_text(INFO, "FLAGRED: frame unknown, turning counts")
+    gcs:send_text(INFO, "FLAGRED: frame unknown, turns add risk")
     return
   end
 -- @put read_efforts

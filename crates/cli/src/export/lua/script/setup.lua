@@ -10,7 +10,7 @@ local function add_parameters()
     added = added and param:add_param(PARAMETER_TABLE, i, parameter[1], parameter[2])
   end
   if not added then
-    gcs:send_text(WARNING, "FLAGRED: no parameters, the defaults hold")
+    gcs:send_text(WARNING, "FLAGRED: no parameters, defaults are used")
   end
 end
 

@@ -27,7 +27,7 @@ function say(level, risk, of_notice)
     return
   end
   if not is_open and level > GOOD then
-    gcs:send_text(severity, text .. " stays: motors not as before")
+    gcs:send_text(severity, text .. " stays: motor balance is off")
     return
   end
   if is_open and by_elevated then
