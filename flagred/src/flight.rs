@@ -498,6 +498,7 @@ impl Flight {
             summary,
             inputs: profile.inputs.iter().map(|i| i.name.clone()).collect(),
             assumed_inputs: AssumedInput::of(&self.assumed, profile),
+            unknown_risk: longest(&self.unknown).map(|(unknown, _)| unknown.explain(profile)),
             steps: self.steps,
             widened_step_s: self.widened_step_s,
         }
@@ -523,29 +524,31 @@ impl Flight {
                 })
             }
             (None, None) if knows_enough => Verdict::Known(Level::Good),
-            (None, None) => {
-                let longest = self.unknown.iter().max_by(|a, b| a.1.total_cmp(&b.1));
-                Verdict::NotAvailable(match longest {
-                    Some((unknown, total_s)) => Reason::RiskUnknown {
-                        unknown: *unknown,
-                        explanation: match unknown {
-                            Unknown::OnGround => {
-                                "the motors idle for most of the time in the air".into()
-                            }
-                            _ if *total_s < WHOLE_SHARE * summary.in_air_s => format!(
-                                "{} for {:.0} % of the time in the air",
-                                unknown.explain(profile),
-                                100.0 * total_s / summary.in_air_s
-                            ),
-                            _ => unknown.explain(profile),
-                        },
-                        help: None,
+            (None, None) => Verdict::NotAvailable(match longest(&self.unknown) {
+                Some((unknown, total_s)) => Reason::RiskUnknown {
+                    unknown: *unknown,
+                    explanation: match unknown {
+                        Unknown::OnGround => {
+                            "the motors idle for most of the time in the air".into()
+                        }
+                        _ if *total_s < WHOLE_SHARE * summary.in_air_s => format!(
+                            "{} for {:.0} % of the time in the air",
+                            unknown.explain(profile),
+                            100.0 * total_s / summary.in_air_s
+                        ),
+                        _ => unknown.explain(profile),
                     },
-                    None => Reason::NoSamples,
-                })
-            }
+                    help: None,
+                },
+                None => Reason::NoSamples,
+            }),
         }
     }
+}
+
+/// The reason that applied for the longest time.
+fn longest(unknown: &[(Unknown, f64)]) -> Option<&(Unknown, f64)> {
+    unknown.iter().max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 #[cfg(test)]

@@ -177,6 +177,9 @@ fn figures(subject: &Subject, estimator: &Estimator) -> Markup {
             p.soft {
                 "The risk is known for " (of_air(summary.assessed_s)) " of that time and interpolated for "
                 (of_air(summary.filled_s)) "."
+                @if summary.assessed_s < 0.95 * summary.in_air_s && let Some(reason) = &subject.assessed.unknown_risk {
+                    " A reason why it was unknown: " (reason) "."
+                }
                 @if has_motors { " Motors were at a limit for " (share(summary.saturated_share)) " of it." }
                 @if has_motors {
                     " The seconds around take-off and landing are left out of the mean and elevated risk."

@@ -58,7 +58,7 @@ pub fn write(
             .iter()
             .map(|s| format!("{:.1} to {:.1} s", s.start_s, s.end_s));
         let mut text = format!(
-            "{} {:.1} s ({} on the log's clock)",
+            "{} {:.1} s (log time {})",
             in_the_air(flight),
             assessed.summary.in_air_s,
             first_spans(when)
@@ -72,7 +72,7 @@ pub fn write(
         indented(out, &text)?;
     }
     if assessed.summary.assessed_s > 0.0 {
-        indented(out, &summary(&assessed.summary, verbose))?;
+        indented(out, &summary(assessed, verbose))?;
         for risk in &estimator.profile().other_risks {
             if let Some(worst) = finding::highest_of(&risk.output, &assessed.findings) {
                 let (name, span) = (
@@ -349,7 +349,8 @@ fn advice(teller: &Teller<'_>, finding: &Finding, flight: &Flight) -> String {
     }
 }
 
-fn summary(summary: &Summary, verbose: bool) -> String {
+fn summary(assessed: &Assessment, verbose: bool) -> String {
+    let summary = &assessed.summary;
     let at = |peak: Option<Peak>| {
         peak.map_or("unknown".to_owned(), |peak| {
             format!("{:.0} % at {:.1} s", peak.value_pct, peak.t_s)
@@ -374,6 +375,9 @@ fn summary(summary: &Summary, verbose: bool) -> String {
             "; risk unknown for {:.0} % of the time",
             100.0 - share(summary.assessed_s)
         );
+        if let Some(reason) = &assessed.unknown_risk {
+            text += &format!(": {reason}");
+        }
     }
     text
 }

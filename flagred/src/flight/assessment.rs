@@ -21,6 +21,8 @@ pub struct Assessment {
     pub inputs: Vec<String>,
     /// The inputs whose values were assumed, at least until their signals were known.
     pub assumed_inputs: Vec<AssumedInput>,
+    /// The reason why a risk was unknown in the air, the one that applied for the longest time; `None` if all were always known.
+    pub unknown_risk: Option<String>,
     /// The risk over time.
     pub steps: Vec<Step>,
     /// The distance between the steps in seconds, if it is larger than requested because at most 250,000 steps are
@@ -132,6 +134,7 @@ impl Assessment {
             summary: Summary::default(),
             inputs: Vec::new(),
             assumed_inputs: Vec::new(),
+            unknown_risk: None,
             steps: Vec::new(),
             widened_step_s: None,
         }
