@@ -47,8 +47,8 @@ fn misplaced_arguments_are_reported_with_their_correct_position() {
         (
             &["assess", folder],
             3,
-            "cannot be read: is a directory",
-            "name the logs in it",
+            "is a folder",
+            "name the files in it",
         ),
         (
             &["assess", "nowhere.bin"],

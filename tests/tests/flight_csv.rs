@@ -64,14 +64,14 @@ fn a_frame_with_fewer_motors_than_columns_is_refused() {
         refused(
             &flight(header, |_, _| None),
             said,
-            "give columns that are not motors",
+            "rename the columns that are not motors",
         );
     }
     let six = "# frame: QUAD/X\nt_s,motor1,motor2,motor3,motor4,motor5,motor6\n0,0,0,0,0,0,0\n";
     refused(
         six,
         "line 1: `frame` is `QUAD/X`, which has 4 motors",
-        "correct it",
+        "correct the frame",
     );
     // If the factors of all motors are given, they replace the table of the frame.
     let factors: String = (1..=6)

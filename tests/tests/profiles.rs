@@ -315,7 +315,7 @@ fn each_risk_needs_only_the_inputs_that_its_rules_read() {
         let (code, told) = assess(log);
         assert_eq!(code, Some(1), "{told}");
         assert!(told.starts_with("FAIL"), "{told}");
-        let told = told.replace("risk over time, without battery_risk", "");
+        let told = told.replace("(not shown: battery_risk)", "");
         assert!(!told.contains("battery_risk"), "{told}");
     }
     // Calm motors are not enough for GOOD, and the reason is the battery.

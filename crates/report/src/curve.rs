@@ -126,8 +126,7 @@ pub(crate) fn area(
     decimals: usize,
 ) -> String {
     let span_s = stretch.length_s() / SPANS as f64;
-    // Parts without a gap; each span has its first and last time, and its ends.
-    let mut parts: Vec<Vec<(usize, [f64; 2], [f64; 2])>> = Vec::new();
+    let mut parts: Vec<Vec<AreaSpan>> = Vec::new();
     let mut last_s = f64::NEG_INFINITY;
     for (t_s, values) in points.filter(|(t_s, _)| stretch.contains(*t_s)) {
         let Some((low, high)) = values else {
@@ -143,12 +142,16 @@ pub(crate) fn area(
         let Some(part) = parts.last_mut() else {
             continue;
         };
-        match part.last_mut().filter(|span| span.0 == index) {
-            Some((_, times, ends)) => {
-                *times = [times[0], x];
-                *ends = [ends[0].min(low), ends[1].max(high)];
+        match part.last_mut().filter(|span| span.index == index) {
+            Some(span) => {
+                span.times[1] = x;
+                span.ends = [span.ends[0].min(low), span.ends[1].max(high)];
             }
-            None => part.push((index, [x, x], [low, high])),
+            None => part.push(AreaSpan {
+                index,
+                times: [x, x],
+                ends: [low, high],
+            }),
         }
     }
     let across = if stretch.length_s() < FEW_S { 4 } else { 2 };
@@ -156,10 +159,10 @@ pub(crate) fn area(
     for part in parts {
         let upper = part
             .iter()
-            .flat_map(|(_, times, ends)| times.map(|x| (x, ends[1])));
+            .flat_map(|span| span.times.map(|x| (x, span.ends[1])));
         let lower = part
             .iter()
-            .flat_map(|(_, times, ends)| times.map(|x| (x, ends[0])));
+            .flat_map(|span| span.times.map(|x| (x, span.ends[0])));
         let lower: Vec<(f64, f64)> = lower.collect();
         let around = upper.chain(lower.into_iter().rev());
         for (i, (x, y)) in around.enumerate() {
@@ -171,6 +174,13 @@ pub(crate) fn area(
         data.push('Z');
     }
     data
+}
+
+/// A span of an area: its first and last time, its lowest and highest value.
+struct AreaSpan {
+    index: usize,
+    times: [f64; 2],
+    ends: [f64; 2],
 }
 
 #[derive(Default)]

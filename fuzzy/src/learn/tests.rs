@@ -213,7 +213,7 @@ fn rules_can_be_completed_and_made_monotone() {
             rule.note
                 .as_ref()
                 .unwrap()
-                .starts_with("no samples; as the nearest rule")
+                .starts_with("no samples; consequent of the nearest rule")
         );
         assert_eq!(rule.confidence, None);
     }

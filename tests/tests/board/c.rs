@@ -106,6 +106,7 @@ fn the_header_has_the_arrays_of_a_table() {
     let arrays = table::arrays!(list!).map(|(array, item)| match item {
         "f64" => format!("FLAGRED_ARRAY(double, {array})"),
         "u32" => format!("FLAGRED_ARRAY(uint32_t, {array})"),
+        "AntecedentStep" => format!("FLAGRED_ARRAY(flagred_antecedent_step, {array})"),
         "FuzzySet" => format!("FLAGRED_ARRAY(flagred_fuzzy_set, {array})"),
         "LayeredSet" => format!("FLAGRED_ARRAY(flagred_layered_set, {array})"),
         "SetTerm" => format!("FLAGRED_ARRAY(flagred_set_term, {array})"),

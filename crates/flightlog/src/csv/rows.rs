@@ -332,7 +332,7 @@ impl RowCollector {
         }
         let rule = match self.has_air {
             true => "column `in_air`",
-            false => "there is no column `in_air`: every row counts as in the air",
+            false => "there is no column `in_air`: every row counts",
         };
         let before = !self.has_air;
         let last_change_s = self

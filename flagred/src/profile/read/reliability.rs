@@ -86,7 +86,7 @@ fn followed(fields: &Fields, key: &str, found: &mut Found) -> Option<Followed> {
         let message = format!("`followed` of `{key}` is greater than its `moments`");
         found.push(
             Diagnostic::error("order", node.span.clone(), message)
-                .help("`followed` counts those of the `moments` that an attitude error followed: it is at most `moments`"),
+                .help("`followed` counts those of the `moments` that a large error followed: it is at most `moments`"),
         );
     }
     Some(counts)
