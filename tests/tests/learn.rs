@@ -217,11 +217,11 @@ fn bad_data_is_reported_with_its_position_and_nothing_is_written() {
         (
             "text",
             "margin,spread,risk\nhigh,0.1,5\n",
-            "contains no number (line 2: `high`)",
+            "line 2, column `margin`: `high` is not a number",
         ),
         (
             "infinite",
-            "margin,spread,risk\n0.1,0.1,inf\n0.1,0.1,5\n",
+            "margin,spread,risk\n0.1,0.1,inf\n",
             "line 2, column `risk`: `inf` is not a finite number",
         ),
         (

@@ -325,16 +325,20 @@ impl Table {
         }
     }
 
-    /// Refuses a column without any number; `help` is for one that contains words.
+    /// Refuses a column without any number; `help` is for one that contains words. The only row of a table has a message of its
+    /// own.
     pub(crate) fn has_numbers(&self, column: usize, help: &str) -> Result<(), Failure> {
         let cell = |row| self.text(row, column);
         let mut cells = (0..self.len()).map(|row| Cell::of(cell(row).as_bytes()));
-        if cells.any(|cell| matches!(cell, Cell::Number(_))) {
+        if self.len() == 1 || cells.any(|cell| matches!(cell, Cell::Number(_))) {
             return Ok(());
         }
         let (file, name) = (&self.header.file, self.header.name(column));
         let advice = fuzzy::tree::number_advice(cell(0));
-        let example = format!("line {}: `{}`", self.line(0), quoted(cell(0)));
+        let example = match quoted(cell(0)) {
+            empty if empty.is_empty() => format!("line {}: an empty cell", self.line(0)),
+            text => format!("line {}: `{text}`", self.line(0)),
+        };
         let message = format!("column `{name}` of `{file}` contains no number ({example})");
         Err(Failure::unreadable(message).help(advice.as_deref().unwrap_or(help)))
     }
