@@ -1,4 +1,4 @@
-//! Conversion of errors and findings to Python; the classes are in `python/flagred/_errors.py`.
+//! Conversion of errors and findings to Python; the classes are in `python/flagred/errors.py`.
 
 use std::io;
 
@@ -10,9 +10,9 @@ use fuzzy::{
 };
 use pyo3::{exceptions::PyOSError, prelude::*, sync::PyOnceLock, types::PyType};
 
-pyo3::import_exception!(flagred._errors, DataError);
-pyo3::import_exception!(flagred._errors, LogError);
-pyo3::import_exception!(flagred._errors, RuleSetError);
+pyo3::import_exception!(flagred.errors, DataError);
+pyo3::import_exception!(flagred.errors, LogError);
+pyo3::import_exception!(flagred.errors, RuleSetError);
 
 const STYLE: Style = Style {
     colored: false,
@@ -85,7 +85,7 @@ pub(crate) fn diagnostics<'py>(
     text: &str,
 ) -> PyResult<Vec<Bound<'py, PyAny>>> {
     static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
-    let class = CLASS.import(py, "flagred._errors", "Diagnostic")?;
+    let class = CLASS.import(py, "flagred.errors", "Diagnostic")?;
     let object = |finding: &Diagnostic| {
         let severity = match finding.severity {
             Severity::Error => "error",

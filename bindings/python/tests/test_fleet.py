@@ -603,7 +603,7 @@ def test_assess_reads_the_logs_of_a_torn_part_again(kind, logs, tmp_path, here, 
     logs.mkdir()
     assert main(arguments) == 3
     told = capsys.readouterr().err
-    assert f"`{torn}` is damaged" in told and "is not listed" in told and "help: restore the file" in told
+    assert f"`{torn}` is damaged" in told and "name the sources of all its logs" in told and "help: restore the file" in told
     assert torn.exists() and main(["compact", str(out)]) == 3
 
 
@@ -632,7 +632,7 @@ def test_a_part_that_is_missing_is_named_and_its_logs_are_read_again(kind, logs,
     shutil.rmtree(logs)
     logs.mkdir()
     assert main(arguments) == 3
-    assert "is not listed" in capsys.readouterr().err
+    assert "name the sources of all its logs" in capsys.readouterr().err
 
 
 def test_damage_inside_a_part_is_named(logs, tmp_path, here, capsys):

@@ -79,6 +79,7 @@ fn half_widths_are_numbers_or_columns() {
     assert_eq!(rows[1][2..5], [Some(4.0); 3]);
     assert_eq!(rows[2][2..5], [Some(4.0), None, None]);
     assert_eq!(rows[3][2..5], [None; 3]);
+    assert!(text.contains("the half-width of `heat` is unknown"));
     assert!(text.contains("column `error_c`: the half-width -1 is negative"));
     assert_eq!(output.status.code(), Some(1));
 }

@@ -12,43 +12,30 @@
 4.5
 
 Models are called like functions: :func:`load`, :func:`loads`, :class:`Model`. Logs are assessed by :func:`assess`, or
-sample by sample by a :class:`Monitor`. :func:`learn`, :func:`tune`, :func:`identify`, :func:`simplify` and
-:func:`c_means` use data, :func:`evaluate` measures how well risks predict. ``flagred.types`` contains the types of
-results, ``flagred.sklearn`` estimators, ``flagred.testing`` helpers for tests, and ``flagred.fleet`` functions for many
-logs.
+sample by sample by a :class:`Monitor`, with a shipped profile or your own: ``help("flagred.Profile")``.
+
+``learn``, ``tune``, ``identify``, ``simplify`` and ``c_means`` use data: ``help("flagred.learning")``. ``evaluate``
+measures how well risks predict: ``help("flagred.evaluation")``. Each error is a ``FlagredError``:
+``help("flagred.errors")``. ``flagred.types`` contains the types of results, ``flagred.sklearn`` estimators,
+``flagred.testing`` helpers for tests, and ``flagred.fleet`` functions for many logs.
 """
 
 from . import types
-from ._clusters import c_means
-from ._core import VERSION as __version__, Profile
-from ._errors import DataError, FlagredError, LogError, RuleSetError
+from ._clusters import c_means as c_means
+from ._core import VERSION as __version__, Profile as Profile
 from ._flight import assess, read_log
-from ._identify import identify
-from ._learning import TuneInterrupted, learn, tune
+from ._identify import identify as identify
+from ._learning import TuneInterrupted as TuneInterrupted, learn as learn, tune as tune
 from ._model import Model, load, loads
 from ._monitor import Monitor
-from ._simplify import simplify
-from .evaluation import evaluate
+from ._simplify import simplify as simplify
+from .errors import (
+    DataError as DataError,
+    FlagredError as FlagredError,
+    LogError as LogError,
+    RuleSetError as RuleSetError,
+)
+from .evaluation import evaluate as evaluate
 
-__all__ = [
-    "DataError",
-    "FlagredError",
-    "LogError",
-    "Model",
-    "Monitor",
-    "Profile",
-    "RuleSetError",
-    "TuneInterrupted",
-    "__version__",
-    "assess",
-    "c_means",
-    "evaluate",
-    "identify",
-    "learn",
-    "load",
-    "loads",
-    "read_log",
-    "simplify",
-    "tune",
-    "types",
-]
+# What `help(flagred)` shows. The other names are described by the modules that it mentions.
+__all__ = ["Model", "Monitor", "__version__", "assess", "load", "loads", "read_log", "types"]

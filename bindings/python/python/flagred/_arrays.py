@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._errors import DataError
+from .errors import DataError
 
 
 def array(value: Any) -> NDArray[np.float64]:

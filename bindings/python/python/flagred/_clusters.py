@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._arrays import array
 from ._core import _c_means
-from ._errors import DataError
+from .errors import DataError
 from ._tables import whole_numbers
 
 __all__ = ["Clusters", "c_means"]

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from typing_extensions import Self, disjoint_base
 
-from ._errors import Diagnostic
+from .errors import Diagnostic
 
 __all__ = [
     "VERSION",

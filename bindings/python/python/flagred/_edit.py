@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar, overload
 
 from ._arrays import array
 from ._core import RuleSet
-from ._errors import DataError
+from .errors import DataError
 
 if TYPE_CHECKING:
     import numpy as np

@@ -13,7 +13,7 @@ import numpy as np
 from . import _data
 from ._core import AssessmentData, FlightData, Profile, Table
 from ._data import Event, Finding, Gap, Geometry, Intervals, Motor, Parameter, Range, Report, Summary, Vehicle
-from ._errors import DataError
+from .errors import DataError
 from ._picture import framed
 from ._tables import names_of
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ._arrays import array
 from ._core import _identify
-from ._errors import DataError
+from .errors import DataError
 from ._learning import Figure
 from ._model import Model, _read
 from ._tables import column_names, column_of, groups_of, names_of, same_length, table_of, whole_numbers

@@ -7,7 +7,7 @@ from typing import Any, Literal, NamedTuple
 
 from ._arrays import array
 from ._core import _learn, _tune
-from ._errors import DataError
+from .errors import DataError
 from ._model import Model, _read
 from ._tables import column_of, groups_of, names_of, same_length, table_of, whole_numbers
 

@@ -10,7 +10,7 @@ from typing import IO, Any, Literal
 
 from ._core import RuleSet, _built_in
 from ._edit import Document, Operators, Output, Rules, Variable, Variables, edit, plain, rule_lists
-from ._errors import DataError, RuleSetError
+from .errors import DataError, RuleSetError
 from ._picture import Picture, plot_surface
 
 __all__ = ["Model", "load", "loads"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any
 
-from ._errors import DataError
+from .errors import DataError
 
 if TYPE_CHECKING:
     from ._core import DecisionMap

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._errors import DataError
+from .errors import DataError
 
 
 # Options that are counts.

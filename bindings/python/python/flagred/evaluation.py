@@ -12,7 +12,7 @@ import numpy as np
 
 from ._arrays import array
 from ._core import EvaluationData, Profile, Table
-from ._errors import DataError
+from .errors import DataError
 from ._flight import Flight, read_log
 from ._picture import framed
 from ._tables import column_names, column_of, same_length, table_of

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ._errors import DataError
+from .errors import DataError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -33,7 +33,7 @@ from ._data import (
     Vehicle,
 )
 from ._edit import Operators, Output, Rule, Rules, Term, Variable, Variables
-from ._errors import Diagnostic
+from .errors import Diagnostic
 from ._flight import Assessment, Flight, Signal, Signals
 from ._identify import IdentifyResult, IdentifyStep, IdentifyValidation
 from ._learning import ChangedNumber, Errors, Figure, LearnResult, TuneResult, TuneValidation

@@ -29,7 +29,9 @@ pub(super) fn against(path: &Path, evaluated: &MapSource) -> Result<Exit, Failur
     let names: Vec<&str> = evaluated.engine.input_names().collect();
     let help = "`flagred map --csv` writes such a table";
     let columns = names.iter().map(|name| table.header.require(name, help));
-    let columns: Vec<usize> = columns.collect::<Result<_, _>>()?;
+    // `map` has no options for the columns of a table.
+    let columns: Result<Vec<usize>, Failure> = columns.collect();
+    let columns = columns.map_err(|failure| failure.help(help))?;
     let outputs = evaluated.engine.output_names().enumerate();
     let outputs = outputs.filter_map(|(output, name)| {
         let column = table.header.column(name)?;

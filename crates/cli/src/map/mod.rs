@@ -49,7 +49,7 @@ pub(crate) struct Arguments {
     hold: Vec<(String, f64)>,
 
     /// The input along the horizontal axis, and the part of its range to show: `spread` or
-    /// `spread:0..0.2` [default: the first that is not fixed, where its terms change]
+    /// `spread:0..0.2` [default: the first that is not fixed; pictures show the part where its terms change]
     #[arg(long, value_name = "INPUT", value_parser = axis)]
     x: Option<AxisChoice>,
 

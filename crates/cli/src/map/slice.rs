@@ -1,7 +1,10 @@
 //! The part of a map that a picture shows: two inputs are the axes, the others have fixed values.
 
 use flagred_authoring::slice::{self, POINTS};
-use fuzzy::drawing::{Axis, Scale, Slice, short};
+use fuzzy::{
+    drawing::{Axis, Scale, Slice, short},
+    model::Variable,
+};
 
 use super::{Arguments, AxisChoice, MapSource};
 use crate::failure::Failure;
@@ -82,7 +85,12 @@ pub(super) fn axes(arguments: &Arguments, evaluated: &MapSource) -> Result<Axes,
     let variable = |input: usize| model.inputs.get(input);
     let axis = |input: usize, choice: &Option<AxisChoice>| {
         let part = choice.as_ref().and_then(|choice| choice.part);
-        let part = |v| part.map_or_else(|| slice::shown(v), |(low, high)| Scale::new(low, high));
+        // Numbers are compared with later ones, so that they show every value of the inputs.
+        let shown = |v: &Variable| match arguments.csv || arguments.values {
+            true => Scale::new(v.low, v.high),
+            false => slice::shown(v),
+        };
+        let part = |v| part.map_or_else(|| shown(v), |(low, high)| Scale::new(low, high));
         variable(input).map(|v| Axis::new(v, part(v), points))
     };
     let x_axis =

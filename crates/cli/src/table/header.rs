@@ -54,7 +54,7 @@ impl Header {
             if let [only] = self.names.as_slice()
                 && only.contains(' ')
             {
-                return failure.help("the first line must contain the names of the columns, separated as `--delimiter` says");
+                return failure.help("the first line must contain the names of the columns, separated by `,` or the character of `--delimiter`");
             }
             if self.column("t_s").is_some() && ["motor1", "pwm1"].iter().any(|it| self.column(it).is_some()) {
                 let file = &self.file;

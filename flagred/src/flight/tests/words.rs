@@ -82,7 +82,7 @@ fn another_risk_is_named() {
     finding.risk_output = Some("battery_risk".into());
     let Words { code, text, .. } = finding.words(&shipped::flagred_battery());
     assert_eq!(code, "low_battery");
-    let expected = "The battery had 12.25 % left. The risk `battery_risk` reached 78 %.";
+    let expected = "The battery fell to 12.25 %. The risk `battery_risk` reached 78 %.";
     assert_eq!(text, expected);
 }
 

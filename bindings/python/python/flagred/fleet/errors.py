@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .._errors import FlagredError
+from ..errors import FlagredError
 
 __all__ = ["DamagedError", "FleetError"]
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from .._errors import LogError
+from ..errors import LogError
 from .rows import Rows, add, told
 from .schema import KINDS, MONTH_UNKNOWN
 from .shards import Job, Shard
