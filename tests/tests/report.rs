@@ -75,7 +75,7 @@ fn the_curves_have_the_values_of_the_json_document() {
     let (least, most) = drawn.fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(v), b.max(v)));
     assert!((least - ends("risk_low").0).abs() <= 0.051, "{least}");
     assert!((most - ends("risk_high").1).abs() <= 0.051, "{most}");
-    assert!(html.contains("<span class=\"key area risk\">interval of the risk</span>"));
+    assert!(html.contains("<span class=\"key filled risk\">interval of the risk</span>"));
     let start_s = document["steps"][0]["t_s"].as_f64().unwrap();
     assert!(html.contains("No threshold was reached"));
     assert!(

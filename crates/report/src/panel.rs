@@ -30,7 +30,7 @@ pub(super) fn panel(panel: &Panel, timeline: &Timeline, input: Option<usize>) ->
                     " " span.key.(line.class).bare[line.name.is_empty()] { (line.name) " " output {} }
                 }
                 @if let Some(band) = &panel.band {
-                    " " span.key.area.(band.class) { (band.name) }
+                    " " span.key.filled.(band.class) { (band.name) }
                 }
                 @for mark in marks {
                     " " span.key.dashed.(mark.class) { (mark.name) }
