@@ -134,7 +134,7 @@ rules: [IF spread IS even THEN risk IS low, IF spread IS uneven THEN risk IS hig
         assert!(output.status.success(), "{output:?}");
         String::from_utf8(output.stdout).unwrap()
     };
-    // Rows are compared by their time, because profiles assess flights from different times on.
+    // Rows are matched by their time, because the first assessed time depends on the profile.
     let column = |rows: &str, name: &str| -> BTreeMap<String, String> {
         let mut lines = rows.lines().map(|line| line.split(',').collect::<Vec<_>>());
         let head = lines.next().unwrap();

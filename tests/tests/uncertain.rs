@@ -1,5 +1,5 @@
-//! Uncertain inputs: no value for inputs inside intervals is outside the interval of the output, and that interval is
-//! not much wider than the values.
+//! Uncertain inputs: the interval of an output contains its values for all inputs inside their intervals, and is not much
+//! wider than the range of these values.
 
 use fastrand::Rng;
 use flagred_tests::random_models;

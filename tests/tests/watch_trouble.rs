@@ -205,8 +205,8 @@ fn packet(message: u8, extra: u8, payload: &[u8]) -> Vec<u8> {
     log.bytes.split_off(8)
 }
 
-/// Sends every message with each field in turn, and then all fields, set to all ones (the largest number, 65535, NaN of a float);
-/// floats also as infinities.
+/// Sends every message with extreme values: all bits of one field are set, for each field in turn, and then all bits of all
+/// fields (the largest unsigned integer; NaN for a float). Floats are also sent as infinities.
 fn wild(vehicle: &mut StandIn, t_us: u32) {
     for (message, extra, payload, widths) in messages_read(t_us) {
         assert_eq!(payload.len(), widths.iter().sum::<usize>(), "{message}");

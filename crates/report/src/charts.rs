@@ -29,7 +29,8 @@ pub(crate) const SIGNALS: [&str; 6] = [
 /// The signals from which the track is drawn.
 pub(crate) const POSITIONS: [&str; 4] = ["latitude_deg", "longitude_deg", "north_m", "east_m"];
 
-/// The signals that are needed to assess a log and to draw its report without the signals that readers may add.
+/// The signals that are needed to assess a log and to draw the fixed part of its report. Signals that a reader may add to the
+/// report are not included.
 pub fn signals(estimator: &Estimator) -> Vec<String> {
     let of_profile = estimator.profile().signals().into_iter();
     let drawn = SIGNALS.into_iter().chain(POSITIONS);

@@ -211,7 +211,7 @@ fn path(steps: &[&Step], [x, y]: [usize; 2], x_scale: Scale, y_scale: Scale) -> 
         + &dots(&visits)
 }
 
-/// Dots for the time spent in each cell, whose area grows with the time, in five sizes.
+/// A dot for each visited cell, in one of five sizes; its area grows with the time spent in the cell.
 fn dots(visits: &[u32]) -> String {
     let most = visits.iter().copied().max().unwrap_or(0).max(1);
     let mut sizes = [const { String::new() }; 5];

@@ -87,8 +87,8 @@ fn factor(z: f64) -> f64 {
 /// The bounds of an unbounded number.
 pub(crate) const UNBOUNDED: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 
-/// The bounds of the constant of a term: the range of its output or, if it is outside, the part of the axis up to its
-/// current value. With `beyond_range` it may leave the range by the width of the range. Other terms have no bounds.
+/// The bounds of the constant of a term: the range of its output, extended to the current value if that is outside. With
+/// `beyond_range`, the range is first widened by its own width on both sides. Terms that are not constants have no bounds.
 pub(crate) fn bounds(variable: &Variable, term: &Term, beyond_range: bool) -> (f64, f64) {
     let MembershipFunction::Constant { value } = term.membership_function else {
         return UNBOUNDED;

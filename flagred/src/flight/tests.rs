@@ -117,8 +117,8 @@ fn a_second_flight_starts_without_the_state_of_the_first() {
     assert_eq!(fly(30.0, HOVER).verdict, Verdict::Known(Level::Good));
 }
 
-/// The first input of the paper's rules is the margin of the motors, or another signal, whose low values are not a motor
-/// at its limit.
+/// Tests the paper's rules with two sources of their first input: the margin of the motors, and another signal, whose low
+/// values do not mean that a motor is at its limit.
 #[test]
 fn a_motor_is_named_only_where_motors_near_a_limit_are_the_cause() {
     let paper = shipped::flagred_paper();

@@ -184,7 +184,7 @@ const EMPTY: Strengths<'static> = Strengths {
 /// The ends of a number, and the bounds of its weight.
 type Number = ((f64, f64), (f64, f64));
 
-/// Returns the ends of the averages or sums of numbers. Both never decrease when a number increases.
+/// Returns the bounds of the weighted averages or sums of numbers. Neither bound decreases when a number increases.
 fn weighted(
     numbers: &[Number],
     reduce: fn(&[WeightedNumber]) -> Option<(f64, f64)>,

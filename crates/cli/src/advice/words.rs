@@ -1,4 +1,4 @@
-//! Words of other programs for commands, options and values, with the words here.
+//! Names of commands, options and values in other programs, and their equivalents here.
 
 /// Names of commands in other programs, and the equivalent commands here.
 pub(super) const COMMANDS: &[(&str, &str)] = &[

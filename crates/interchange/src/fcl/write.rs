@@ -98,7 +98,7 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<WriteResult, Findin
         }
         let word = draft.word(words::DEFUZZIFIERS, output.defuzzifier, "the defuzzifier");
         draft.line(format!("  METHOD : {word};"));
-        // Computed values are weighted separately for each rule, which in FCL is the sum.
+        // Each rule contributes its computed value with its own weight. In FCL, this corresponds to `ACCU : SUM`.
         let aggregation = match computes {
             true => Aggregation::Sum,
             false => output.aggregation.unwrap_or(model.operators.aggregation),

@@ -155,8 +155,8 @@ impl ReferenceOutputs {
         self.outcomes.get(row * self.outputs.len() + output)
     }
 
-    /// Updates the largest difference: its share of the tolerance, row, output, and value. The error is a row at which
-    /// the kinds of outcomes differ.
+    /// Updates `worst`, the largest difference so far: the difference divided by the tolerance, the row, the output, and the
+    /// new value. Returns as the error the first row with a difference above the tolerance or with another kind of outcome.
     fn worst(
         &self,
         rows: impl Iterator<Item = usize>,

@@ -143,9 +143,9 @@ impl RangedStage {
         &self.outputs
     }
 
-    /// Adds the corners of the terms that the rules of an output read, if between corners the firing strengths are linear
-    /// along each input and added for each term. Returns the largest sum of strengths that count as 0, relative to the
-    /// least weight of a rule.
+    /// Adds the corners of the terms that the rules of an output read. This requires that the firing strengths are linear
+    /// along each input between corners, and that the strengths of a term are summed; otherwise returns `None`. Returns an
+    /// upper bound of the total strength that is rounded to 0, divided by the least weight of a rule.
     pub(super) fn linear(&self, output: usize, corners: &mut [Vec<f64>]) -> Option<f64> {
         let output = self.own.get(output)?;
         let strengths = output.first..output.first + output.offsets.last()?;
