@@ -258,7 +258,7 @@ fn an_empty_battery_determines_the_risk_of_the_shipped_profile() {
     // The battery runs empty during the flight.
     let (_, told) = assess(&|t_s| Some((80.0 - 2.0 * t_s).max(0.0)));
     assert!(
-        told.starts_with("FAIL") && told.contains("The battery had "),
+        told.starts_with("FAIL") && told.contains("The battery fell to "),
         "{told}"
     );
     // An unknown level never counts as GOOD.
