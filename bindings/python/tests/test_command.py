@@ -33,7 +33,7 @@ def run(*arguments: str, program: str = COMMAND, **more) -> subprocess.Completed
         (["assess", "--fail-on", "good", FLIGHT], 2),
         (["check", "missing.yaml"], 3),
         (["check", str(ROOT / "rules/tipper.yaml")], 0),
-        (["check", "--deny", "warnings", str(ROOT / "rules/tipper.yaml")], 1),
+        (["check", "--deny", "warnings", str(ROOT / "rules/flagred-paper.yaml")], 1),
         (["frobnicate"], 2),
         (["--help"], 0),
         ([], 2),
