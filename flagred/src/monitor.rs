@@ -318,11 +318,8 @@ impl Monitor {
             };
             let divisors = [per.low, per.high].map(|per| per.max(ratio.at_least));
             let ends = [divided.low, divided.high].map(|end| divisors.map(|by| end / by));
-            let ends = ends.into_iter().flatten();
-            let nothing = Interval::new(f64::INFINITY, f64::NEG_INFINITY);
-            *found = ends.fold(nothing, |found, end| {
-                Interval::new(found.low.min(end), found.high.max(end))
-            });
+            let ends = ends.into_iter().flatten().map(Interval::from);
+            *found = ends.reduce(Interval::hull).unwrap_or(*found);
         }
         Some(all)
     }

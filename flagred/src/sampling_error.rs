@@ -63,7 +63,7 @@ impl SampledMean {
         let middle = (share + square / 2.0) / (1.0 + square);
         let root = libm::sqrt(square * (share * (1.0 - share) + square / 4.0));
         let half = root / (1.0 + square);
-        Interval::new((middle - half).max(0.0), (middle + half).min(1.0))
+        Interval::around(middle, half).within(Interval::new(0.0, 1.0))
     }
 }
 

@@ -2,13 +2,9 @@
 
 use alloc::{string::String, vec, vec::Vec};
 
-use fuzzy::engine::Interval;
-
 pub use crate::channel::{Motors, Observation, Statistic};
 use crate::{
-    channel::{
-        Channel, ChannelState, Input, Now, Observed, Threshold, interval, push, restart, value,
-    },
+    channel::{Channel, ChannelState, Input, Now, Observed, Threshold, push, restart, value},
     craft::Craft,
     motor::{Bin, Motor, clear, set_geometry, take},
 };
@@ -252,10 +248,10 @@ impl Observer {
         value((&self.channels, &self.inputs), &self.seen, input)
     }
 
-    /// The two-sided interval of 95 % of the value of the source with this index, by its samples: docs/method.md defines
-    /// it. `None` if nothing is known, and for an exponential window.
-    pub fn interval(&self, input: usize) -> Option<Interval> {
-        interval((&self.channels, &self.inputs), &self.seen, input)
+    /// The interval of the value of the source with this index.
+    #[cfg(test)]
+    pub(crate) fn interval(&self, input: usize) -> Option<fuzzy::engine::Interval> {
+        crate::channel::interval((&self.channels, &self.inputs), &self.seen, input)
     }
 }
 

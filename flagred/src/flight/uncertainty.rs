@@ -123,26 +123,25 @@ impl<'e> RiskBounds<'e> {
             let variables = self.estimator.model().inputs.iter();
             let places = variables.zip(self.estimator.order());
             for (place, (variable, from)) in self.point.iter_mut().zip(places) {
-                let clamp = |end: f64| end.clamp(variable.low, variable.high);
+                let range = Interval::new(variable.low, variable.high);
                 *place = match *from {
                     UNREAD => Interval::from(variable.low),
-                    from => {
-                        let Interval { low, high } = *risk.inputs.get(from as usize)?;
-                        Interval::new(clamp(low), clamp(high))
-                    }
+                    from => risk.inputs.get(from as usize)?.within(range),
                 };
             }
             let outcomes = self.enclosure.evaluate(&self.point).ok();
             let output = self.estimator.output();
             let of_rules = outcomes.and_then(|outcomes| outcomes.get(output)?.values);
             let filled = self.estimator.filled_within(&self.point);
-            for other in of_rules.into_iter().chain(filled) {
-                values = Interval::new(values.low.min(other.low), values.high.max(other.high));
-            }
+            values = of_rules
+                .into_iter()
+                .chain(filled)
+                .fold(values, Interval::hull);
         }
+        let Interval { low, high } = values.within(Interval::new(0.0, 100.0));
         Some(RiskInterval {
-            low_pct: values.low.clamp(0.0, 100.0),
-            high_pct: values.high.clamp(0.0, 100.0),
+            low_pct: low,
+            high_pct: high,
         })
     }
 }

@@ -102,10 +102,7 @@ impl FilledKnots<'_> {
 /// The smallest interval that contains all values; `None` without any.
 #[cfg(feature = "std")]
 fn hull(values: impl Iterator<Item = f64>) -> Option<Interval> {
-    values.fold(None, |found: Option<Interval>, value| {
-        let Interval { low, high } = found.unwrap_or(Interval::from(value));
-        Some(Interval::new(low.min(value), high.max(value)))
-    })
+    values.map(Interval::from).reduce(Interval::hull)
 }
 
 /// Interpolates values at knots linearly along each axis; beyond the outermost knots the value is constant. `None` if

@@ -77,10 +77,7 @@ pub(crate) fn interval(
             Interval::new(at(share.low)?, at(share.high)?)
         }
     };
-    Some(Interval::new(
-        found.low.min(known.value),
-        found.high.max(known.value),
-    ))
+    Some(found.hull(Interval::from(known.value)))
 }
 
 #[cfg(test)]

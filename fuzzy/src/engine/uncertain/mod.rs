@@ -91,12 +91,15 @@ impl Interval {
         self.low + 0.5 * (self.high - self.low)
     }
 
-    fn hull(self, other: Interval) -> Self {
+    /// Returns the smallest interval that contains both.
+    #[must_use]
+    pub fn hull(self, other: Interval) -> Self {
         Interval::new(self.low.min(other.low), self.high.max(other.high))
     }
 
     /// Returns the interval with both ends clamped to a range.
-    fn within(self, range: Interval) -> Self {
+    #[must_use]
+    pub fn within(self, range: Interval) -> Self {
         let clamp = |end: f64| end.max(range.low).min(range.high);
         Interval::new(clamp(self.low), clamp(self.high))
     }
