@@ -164,8 +164,17 @@ pub(crate) fn highest_of<'f>(output: &str, findings: &'f [Finding]) -> Option<&'
     of_risk.max_by(|a, b| a.value_pct.total_cmp(&b.value_pct))
 }
 
+/// The advice of a finding, and where the motors are that it names.
+pub(crate) fn advice(teller: Teller<'_>, finding: &Finding, flight: &Flight) -> String {
+    let advice = teller.words(finding).advice;
+    match positions(finding, flight) {
+        Some(positions) => format!("{advice} {positions}"),
+        None => advice,
+    }
+}
+
 /// Where the motors are that a finding names: `Motor 3 is at the front left.` `None` without motors or a known geometry.
-pub(crate) fn positions(finding: &Finding, flight: &Flight) -> Option<String> {
+fn positions(finding: &Finding, flight: &Flight) -> Option<String> {
     let (named, geometry) = (finding.motor?, flight.geometry.as_ref()?);
     let places = [Some(named.number), named.or_number].into_iter().flatten();
     let sentences = places.filter_map(|place| {

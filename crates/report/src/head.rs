@@ -119,8 +119,7 @@ pub(crate) fn findings(subject: &Subject, loaded: &Loaded) -> Markup {
                 li.(charts::level_class(line.worst.severity)) {
                     span.what { b { (line.worst.severity) } " " (teller.words(line.worst).text) }
                     br;
-                    (teller.words(line.worst).advice)
-                    @if let Some(positions) = finding::positions(line.worst, &subject.flight) { " " (positions) }
+                    (finding::advice(teller, line.worst, &subject.flight))
                     br;
                     span.soft { (line.when(clock)) ". " (teller.details_by(line.worst, clock)) }
                 }
@@ -177,7 +176,7 @@ fn figures(subject: &Subject, estimator: &Estimator) -> Markup {
             p.soft {
                 "The risk is known for " (of_air(summary.assessed_s)) " of that time and interpolated for "
                 (of_air(summary.filled_s)) "."
-                @if summary.assessed_s < 0.95 * summary.in_air_s && let Some(reason) = &subject.assessed.unknown_risk {
+                @if words::unknown_share_pct(summary).is_some() && let Some(reason) = &subject.assessed.unknown_risk {
                     " A reason why it was unknown: " (reason) "."
                 }
                 @if has_motors { " Motors were at a limit for " (share(summary.saturated_share)) " of it." }

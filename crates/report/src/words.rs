@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use anstyle::{AnsiColor, Style};
 use flagred::{
     estimator::Estimator,
-    flight::{Assessment, Finding, Peak, Summary, Verdict},
+    flight::{Assessment, Peak, Summary, Verdict},
     profile::{Followed, Profile},
     verdict::Level,
 };
@@ -97,13 +97,13 @@ pub fn write(
             let code = teller.words(finding).code;
             let text = format!("{} [{code}]", teller.finding(finding));
             line(out, finding.severity, &text)?;
-            indented(out, &advice(&teller, finding, flight))?;
+            indented(out, &finding::advice(teller, finding, flight))?;
             indented(out, &teller.details(finding))?;
         }
     } else {
         for one in finding::lines(&assessed.findings) {
             line(out, one.worst.severity, &teller.line(&one))?;
-            indented(out, &advice(&teller, one.worst, flight))?;
+            indented(out, &finding::advice(teller, one.worst, flight))?;
         }
     }
     if !assessed.findings.is_empty() {
@@ -340,15 +340,6 @@ pub fn conversion(name: &str, flight: &Flight) -> Vec<String> {
     damage.into_iter().chain(left_out).collect()
 }
 
-/// The advice of a finding, and where its motors are.
-fn advice(teller: &Teller<'_>, finding: &Finding, flight: &Flight) -> String {
-    let advice = teller.words(finding).advice;
-    match finding::positions(finding, flight) {
-        Some(positions) => format!("{advice} {positions}"),
-        None => advice,
-    }
-}
-
 fn summary(assessed: &Assessment, verbose: bool) -> String {
     let summary = &assessed.summary;
     let at = |peak: Option<Peak>| {
@@ -370,16 +361,19 @@ fn summary(assessed: &Assessment, verbose: bool) -> String {
             share(summary.filled_s)
         );
     }
-    if share(summary.assessed_s) < 95.0 {
-        text += &format!(
-            "; risk unknown for {:.0} % of the time",
-            100.0 - share(summary.assessed_s)
-        );
+    if let Some(unknown_pct) = unknown_share_pct(summary) {
+        text += &format!("; risk unknown for {unknown_pct:.0} % of the time");
         if let Some(reason) = &assessed.unknown_risk {
             text += &format!(": {reason}");
         }
     }
     text
+}
+
+/// The share of the time in the air in which the risk was unknown, in %; `None` up to 5 %.
+pub(crate) fn unknown_share_pct(summary: &Summary) -> Option<f64> {
+    let known_pct = 100.0 * summary.assessed_s / summary.in_air_s;
+    (known_pct < 95.0).then_some(100.0 - known_pct)
 }
 
 /// `54 % of 1280`; `None` without any moment.
