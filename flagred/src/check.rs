@@ -11,7 +11,7 @@ use fuzzy::{
     Findings, Model,
     check::extent,
     diagnostic::{Diagnostic, Severity, nearest, suggest},
-    tree::{Node, Value},
+    tree::{Node, Value, percentage_of_share},
 };
 
 use crate::{
@@ -584,7 +584,7 @@ fn number_of_statistic<'k>(
         Statistic::ShareAbove(threshold) => ("share_above", threshold),
         Statistic::Percentile(number) if number > 0.0 && number < 1.0 => {
             let message = format!("`percentile` is in percent, and {number} is a share");
-            return finding("percentile", message, Some(libm::round(1e8 * number) / 1e6));
+            return finding("percentile", message, Some(percentage_of_share(number)));
         }
         _ => return None,
     };
@@ -618,7 +618,7 @@ fn number_of_statistic<'k>(
         _ => return None,
     };
     let meant = match is_percent {
-        true => Some(libm::round(1e8 * threshold) / 1e6),
+        true => Some(percentage_of_share(threshold)),
         false => Some(threshold / 100.0).filter(|_| threshold > 1.0),
     };
     finding(key, message, meant.filter(inside))

@@ -34,7 +34,7 @@ pub struct Checked<'a> {
     accepted: Vec<check::AcceptedFindings>,
     /// Regions, conflicts, reach and monotonicity in numbers; null if the rule set has errors, and for a profile.
     report: Option<&'a check::Report>,
-    /// The highest risk that each input of a profile causes while all others are calm; absent for a rule set.
+    /// The highest risk that each input of a profile causes while all other inputs are calm; absent for a rule set.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "[Alone]"))]
     alone: Option<&'a [Alone]>,

@@ -97,7 +97,7 @@ impl Document {
         Some(self.fitted.get_or_init(|| profile.fit(&self.source)))
     }
 
-    /// The highest risk that each input of a profile causes while all others are calm; empty for a rule set and for a
+    /// The highest risk that each input of a profile causes while all other inputs are calm; empty for a rule set and for a
     /// profile with errors.
     pub fn alone(&self) -> Vec<Alone> {
         self.estimator().map(alone).unwrap_or_default()

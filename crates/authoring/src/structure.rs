@@ -675,7 +675,7 @@ pub(crate) fn rounded(value: f64, variable: &Variable) -> f64 {
     shortened(value, variable.high - variable.low)
 }
 
-fn written(number: f64) -> String {
+pub(crate) fn written(number: f64) -> String {
     fuzzy::yaml::to_line(&Node::number(number))
 }
 

@@ -20,7 +20,9 @@ use crate::{
     Edit,
     document::{Document, partial},
     edited, numbers,
-    structure::{UNREADABLE, end, inserted, readable, removed, trimmed, variable_node, variables},
+    structure::{
+        UNREADABLE, end, inserted, readable, removed, trimmed, variable_node, variables, written,
+    },
 };
 
 pub use similar::SHAPES;
@@ -176,10 +178,7 @@ pub fn set_parameters(
     let (known, spans) = place(rules, variable).ok_or(NO_VARIABLE)?;
     let now = fields(document, variable, term).ok_or(NO_TERM)?;
     if !now.is_editable {
-        return Err(format!(
-            "a term of this kind ({}) is edited in the text",
-            now.shape
-        ));
+        return Err(only_in_text(&now));
     }
     let to = to.trim();
     if ["peak", "limit"].contains(&now.shape.as_str()) {
@@ -239,10 +238,7 @@ pub fn set_shape(
     let (known, _) = place(rules, variable).ok_or(NO_VARIABLE)?;
     let now = fields(document, variable, term).ok_or(NO_TERM)?;
     if !now.can_change_shape {
-        return Err(format!(
-            "a term of this kind ({}) is edited in the text",
-            now.shape
-        ));
+        return Err(only_in_text(&now));
     }
     let of = known.terms.get(term).ok_or(NO_TERM)?;
     let similar = similar(of, known, shape)
@@ -252,6 +248,10 @@ pub fn set_shape(
 
 const NO_VARIABLE: &str = "there is no such variable";
 const NO_TERM: &str = "there is no such term";
+
+fn only_in_text(term: &TermFields) -> String {
+    format!("a term of this kind ({}) is edited in the text", term.shape)
+}
 
 fn place(rules: &PartialModel, variable: usize) -> Option<(&Variable, &VariableSpans)> {
     let spans = rules.spans.inputs.iter().chain(&rules.spans.outputs);
@@ -388,8 +388,4 @@ fn number_of(node: &Node) -> Option<f64> {
         Value::Scalar(scalar) => scalar.as_number(),
         _ => None,
     }
-}
-
-fn written(number: f64) -> String {
-    yaml::to_line(&Node::number(number))
 }

@@ -170,8 +170,8 @@ fn examine<'s>(source: &'s Source, arguments: &Arguments) -> Result<Examined<'s>
     })
 }
 
-/// Reads a profile; returns all findings about it and its rule set, and the highest risk that each of its inputs causes
-/// while all others are calm. A rule set with errors is refused, since these are in another file.
+/// Reads a profile. Returns all findings about it and its rule set, and the highest risk that each of its inputs causes
+/// while all other inputs are calm. A rule set with errors is refused, because its errors are in another file.
 fn examine_profile(
     path: &Path,
     source: &Source,

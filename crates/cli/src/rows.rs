@@ -454,12 +454,7 @@ pub(crate) fn refuse(refused: &[String], rows: usize, purpose: &str) -> Failure 
     for (_, same) in kinds.iter().take(KINDS) {
         details.extend(same.iter().take(SHOWN).map(|why| (*why).clone()));
         let more = same.len().saturating_sub(SHOWN);
-        details.extend((more > 0).then(|| {
-            format!(
-                "and {more} more like {}",
-                if same.len() > 1 { "these" } else { "this" }
-            )
-        }));
+        details.extend((more > 0).then(|| format!("and {more} more like these")));
     }
     let others = kinds.iter().skip(KINDS).map(|(_, same)| same.len());
     let others: usize = others.sum();

@@ -230,6 +230,9 @@ fn without_value(model: &Model, output: &str, term: &Term, formula: &Formula) ->
         let value = |name: &str| value_of(point, name).unwrap_or(f64::NAN);
         formula.places().all(is_known) && !formula.evaluate(value).is_finite()
     });
+    if points.is_empty() {
+        return None;
+    }
     let index = model
         .outputs
         .iter()
@@ -245,10 +248,7 @@ fn without_value(model: &Model, output: &str, term: &Term, formula: &Formula) ->
         .flatten()
         .find(|one| one.name == term.name)?;
     one.membership_function = MembershipFunction::Constant { value: 1.0 };
-    let engines = (!points.is_empty()).then(|| (Engine::new(model), Engine::new(&other)));
-    let Some((Ok(engine), Ok(other))) = engines else {
-        return None;
-    };
+    let (engine, other) = (Engine::new(model).ok()?, Engine::new(&other).ok()?);
     let has_value = |engine: &Engine, point: &[f64]| {
         let outcomes = engine.evaluate(point).ok();
         outcomes

@@ -104,17 +104,14 @@ fn advice(term: &str, limit: &Node) -> Option<String> {
     let end = range
         .filter(|(low, _)| low.trim().parse::<f64>().is_ok())
         .map(|(_, end)| end.trim());
-    if text.starts_with(['>', '≥']) {
-        return Some(format!("the last term has no limit: write `{term}:`"));
-    }
     let number = end.unwrap_or(text).trim_start_matches(['<', '=', '≤', ' ']);
-    match number.parse::<f64>() {
-        Ok(limit) if limit.is_finite() => Some(format!("write `{term}: {number}`")),
-        Ok(_) => Some(format!("the last term has no limit: write `{term}:`")),
-        Err(_) if text.to_ascii_lowercase().contains("inf") => {
-            Some(format!("the last term has no limit: write `{term}:`"))
-        }
-        Err(_) => None,
+    let limit = number.parse::<f64>().ok();
+    let is_open = text.starts_with(['>', '≥'])
+        || limit.is_some_and(|limit| !limit.is_finite())
+        || limit.is_none() && text.to_ascii_lowercase().contains("inf");
+    match is_open {
+        true => Some(format!("the last term has no limit: write `{term}:`")),
+        false => limit.map(|_| format!("write `{term}: {number}`")),
     }
 }
 
@@ -135,6 +132,9 @@ fn order(
     variable: &Variable,
     findings: &mut Vec<Diagnostic>,
 ) {
+    if node.span.is_empty() {
+        return;
+    }
     let mut error = |code, span, message| {
         let help = in_order(steps);
         findings.push(Diagnostic::error(code, span, message).help(help));
@@ -142,9 +142,6 @@ fn order(
     let last = steps.len().saturating_sub(1);
     let limits: Vec<f64> = steps.iter().filter_map(|(_, limit)| *limit).collect();
     let open = steps.iter().position(|(_, limit)| limit.is_none());
-    if node.span.is_empty() {
-        return;
-    }
     if let (Some((entry, None)), 1..) = (steps.get(open.unwrap_or(last)), limits.len())
         && open != Some(last)
         && limits.len() == last

@@ -12,7 +12,7 @@ mod read;
 #[cfg(feature = "serde")]
 mod serde_impl;
 
-pub use number::{number_advice, percentage_advice, share_of_percentage};
+pub use number::{number_advice, percentage_advice, percentage_of_share, share_of_percentage};
 pub use read::{Entry, Fields};
 
 /// A value with its position in the text.

@@ -16,6 +16,12 @@ pub fn share_of_percentage(text: &str) -> Option<f64> {
     Some(plain(text.trim().strip_suffix('%')?)? / 100.0)
 }
 
+/// Returns the percentage of a share, rounded to six digits after the decimal point: 90 for 0.9.
+#[must_use]
+pub fn percentage_of_share(share: f64) -> f64 {
+    libm::round(1e8 * share) / 1e6
+}
+
 /// Returns advice for a percentage in place of a share, `80` for 0.8; `None` for numbers that are hardly meant as such.
 #[must_use]
 pub fn percentage_advice(number: f64) -> Option<String> {

@@ -6,8 +6,8 @@ use fuzzy::model::Variable;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Extent {
     count: u64,
-    low: f64,
-    high: f64,
+    pub(crate) low: f64,
+    pub(crate) high: f64,
     /// Whether a value is neither 0 nor 1.
     has_fraction: bool,
 }

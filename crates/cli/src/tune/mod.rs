@@ -32,6 +32,7 @@ use crate::{
     numbers::{self, whole},
     output::{self, Output, Stdout},
     rows, rule_set,
+    table::Extent,
 };
 
 #[derive(clap::Args)]
@@ -278,13 +279,9 @@ fn outcomes(arguments: &Arguments, model: &Model, read: &rows::Data) -> Result<(
     let output = model.measured_output();
     let output = output.and_then(|output| model.outputs.get(output));
     let name = output.map_or("", |output| output.variable.name.as_str());
-    let ends = truths.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), truth| {
-        (low.min(truth), high.max(truth))
-    });
+    let Extent { low, high, .. } = Extent::of(truths);
     let message = format!(
-        "the values of `{name}` are from {} to {}, but `--loss {}` is for outcomes of 0 and 1",
-        ends.0,
-        ends.1,
+        "the values of `{name}` are from {low} to {high}, but `--loss {}` is for outcomes of 0 and 1",
         rows::word(&arguments.loss)
     );
     let failure = Failure::unreadable(message);

@@ -4,7 +4,7 @@ use alloc::{borrow::ToOwned, format, string::String, vec::Vec};
 
 use fuzzy::{
     diagnostic::Diagnostic,
-    tree::{Entry, Fields, Node, Value, share_of_percentage},
+    tree::{Entry, Fields, Node, Value, percentage_of_share, share_of_percentage},
 };
 
 use super::{Bounds, Found, number};
@@ -253,7 +253,7 @@ fn input(
         let help = match statistic {
             Statistic::Percentile(number) if *key == "percentile" => {
                 let percent = match number < 1.0 {
-                    true => libm::round(1e8 * number) / 1e6,
+                    true => percentage_of_share(number),
                     false => number,
                 };
                 format!("write for example `{{{key}: {percent}, of: {{{over}: {signal}}}}}`")
