@@ -16,7 +16,7 @@ fn main() {
 
 const POINTS: usize = 1024;
 
-/// Evaluates each of 1024 points in a call. The time is that of all calls; the throughput counts evaluations.
+/// Evaluates 1024 points, one per call. The time is that of all calls; the throughput counts evaluations.
 fn single(bencher: Bencher<'_, '_>, model: &Model) {
     let engine = Engine::new(model).unwrap();
     let mut scratch = engine.scratch();
@@ -86,7 +86,7 @@ fn intervals_b_published(bencher: Bencher<'_, '_>) {
     });
 }
 
-/// 65536 rows in one call, on one thread.
+/// Evaluates 65536 rows in one call, on one thread.
 fn batch(bencher: Bencher<'_, '_>, model: &Model) {
     const ROWS: usize = 65_536;
     let engine = Engine::new(model).unwrap();

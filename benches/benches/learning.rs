@@ -1,5 +1,5 @@
-//! Time and memory of learning rules and of filling the gaps of a map, at the size of a large data set: 100,000 rows of four
-//! inputs with five terms each, and 51 cells along each of four inputs, 6.8 million in all.
+//! Time and memory of learning rules and of filling the gaps of a map, at the size of a large data set: 100,000 rows of
+//! four inputs with five terms each, and a map with 51 cells along each of four inputs (6.8 million cells).
 
 use divan::{Bencher, black_box, counter::ItemsCount};
 use flagred::gap::{FilledMap, Filling, GapMethod, GapSettings};

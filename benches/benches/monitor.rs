@@ -1,4 +1,5 @@
-//! Time and allocations of a sample of eight motors: on a computer, and on board.
+//! Time and allocations for a sample of eight motors, with the monitor for computers and with the monitor for flight
+//! controllers.
 
 use divan::{Bencher, black_box, counter::ItemsCount};
 use flagred::{

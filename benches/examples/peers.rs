@@ -1,8 +1,8 @@
 //! Writes the reference systems as files for other programs, and measures our times for the comparison with them.
 //!
-//! `write FOLDER` writes each system in fuzzylite's language, and points with the exact values there. For the type-2
-//! system it writes only the points, since that language has no type-2 terms.
-//! `time` prints our time for each system, as `system,program,ns`.
+//! `write FOLDER` writes each system in fuzzylite's language, and a table of points with the exact outputs. For the
+//! type-2 system it writes only the points, since that language has no type-2 terms. `time` prints our time for each
+//! system, as `system,program,ns`.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -18,7 +18,7 @@ use fuzzy::model::{Defuzzifier, Implication, MembershipFunction, Model, Variable
 use fuzzy::{Engine, rule::Condition, rule::Rule};
 
 const POINTS: usize = 1024;
-/// A number of points that is too large for the branch predictor of a processor to learn, unlike [`POINTS`].
+/// A number of points that is too large for the branch predictor of a processor to memorise, unlike [`POINTS`].
 const MANY_POINTS: usize = 16_384;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -55,7 +55,7 @@ fn write(folder: &Path, name: &str, model: &Model) -> Result<(), Box<dyn std::er
     write_points(folder, name, model)
 }
 
-/// Writes points with the exact values there; for interval type-2 terms also the ends of the exact intervals.
+/// Writes points with the exact outputs; for interval type-2 terms also the bounds of the exact intervals.
 fn write_points(
     folder: &Path,
     name: &str,

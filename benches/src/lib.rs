@@ -1,4 +1,4 @@
-//! The systems that are timed here and in `benches/peers`.
+//! The fuzzy systems that the benchmarks in this package and in `benches/peers` evaluate.
 
 use fuzzy::model::{
     Defuzzifier, Implication, LowerFunction, MembershipFunction, Model, ModelBuilder, Output,
@@ -142,7 +142,8 @@ pub fn published_type2() -> Model {
     model
 }
 
-/// (c): 4 inputs of 5 terms and all 625 rules; the consequent is the rounded mean of the antecedents.
+/// (c): 4 inputs of 5 terms and all 625 rules; the index of the consequent is the rounded mean of the indices of the
+/// antecedent's terms.
 pub fn four_inputs() -> Model {
     let terms = ["t0", "t1", "t2", "t3", "t4"];
     let five = |name: &str, high: f64| {
@@ -249,7 +250,7 @@ pub fn points(model: &Model, count: usize) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// (g): a common system with gaussians: 2 inputs of 5 terms, 25 rules, an output with this many gaussian terms.
+/// (g): a common system with gaussians: 2 inputs of 5 terms, 25 rules, and an output with `outputs` gaussian terms.
 pub fn gaussians(outputs: usize) -> Model {
     let of = |name: &str, low: f64, high: f64, count: usize| {
         let step = (high - low) / (count - 1) as f64;

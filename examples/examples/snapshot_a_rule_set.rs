@@ -1,4 +1,4 @@
-//! Keep a picture of your rule set beside your tests, so that changed decisions are visible in review.
+//! Keep the decision map of your rule set as text beside your tests, so that a review shows changed decisions.
 //!
 //! `cargo run -p flagred-examples --example snapshot_a_rule_set`
 
@@ -23,7 +23,7 @@ rules:
   - IF charge IS full THEN urgency IS none
 ";
 
-/// The picture of the rule set, as text.
+/// The decision map of the rule set, as text.
 fn decisions() -> Result<String, Box<dyn Error>> {
     let model = fuzzy::yaml::parse(RULES)?.model;
     let engine = Engine::new(&model)?;

@@ -1,16 +1,17 @@
 //! The elevated risk, accumulated from the risks of the last seconds (Eq. 4 to 8 of the paper).
 //!
-//! The risks of a window are modelled as a normal distribution with their mean `mu` and standard deviation `sigma`. Its
-//! part above `high` raises the elevated risk, its part below `low` lowers it:
+//! The risks of a window are modelled as a normal distribution with their mean `mu` and standard deviation `sigma`. The
+//! part of the distribution above `high` raises the elevated risk, the part below `low` lowers it:
 //!
 //! ```text
 //! p_high = 1 - Phi((high - mu) / sigma)        p_low = Phi((low - mu) / sigma)
 //! dR/dt  = rise p_high - fall p_low            0 <= R <= 100
 //! ```
 //!
-//! The paper gives no time step and no values. Ours are rates in % per second, so the result does not depend on the
-//! sample rate. The risk and the rate are interpolated linearly between two samples, and `sigma` includes the change of
-//! the risk between samples. The first risk and the first rate also apply to the time before them.
+//! The paper gives neither a time step nor values for its parameters. Here, `rise` and `fall` are rates in % per
+//! second, so the result does not depend on the sample rate. The risk and the rate are interpolated linearly between
+//! two samples, and `sigma` includes the change of the risk between samples. The first risk and the first rate also
+//! apply to the time before them.
 
 use crate::{moments::Moments, window::Window};
 

@@ -1,5 +1,5 @@
-//! Channels: one quantity observed over one window, and the statistics of it. A channel is plain data that can be in a
-//! constant table; the observed values are in memory of the caller.
+//! Channels: a channel is one quantity observed over one window, with statistics of it. It is plain data that can be in
+//! a constant table; the observed values are in memory of the caller.
 
 mod code;
 mod seen;
@@ -151,7 +151,7 @@ pub enum Observed {
         a: usize,
         /// The subtrahend.
         b: usize,
-        /// Whether both are angles in degrees.
+        /// Whether both signals are angles in degrees.
         circular: bool,
     },
     /// The signal `a` divided by the signal `b`, by their indices.
@@ -202,7 +202,7 @@ pub(crate) fn short_way_deg(difference_deg: f64) -> f64 {
     }
 }
 
-/// The values that count in a share of time.
+/// The values that count towards a share of time.
 ///
 /// # Example: the share of time that motors of the shipped profile are at a limit
 /// ```
@@ -244,7 +244,7 @@ pub struct Channel {
     pub observed: Observed,
     /// How the motors of a sample are combined into one value.
     pub motors: Motors,
-    /// The values that count, for a share of time.
+    /// The values that count towards a share of time; `None` for other statistics.
     pub threshold: Option<Threshold>,
     /// Whether values are averaged over 0.1 s first.
     pub in_bins: bool,
@@ -255,7 +255,7 @@ pub struct Channel {
 }
 
 impl Channel {
-    /// The number of motors that a craft needs so that it has every motor that the channel reads.
+    /// The number of motors that a craft must have for this channel.
     fn motors_needed(&self) -> usize {
         match self.motors {
             _ if self.observed.signals().next().is_some() => 0,
@@ -265,8 +265,8 @@ impl Channel {
     }
 }
 
-/// The number of motors that a craft needs for the channels, and for the findings that are not about the risk if there
-/// are any.
+/// The number of motors that a craft must have for the channels and, with `has_notices`, for the findings that are not
+/// about the risk.
 pub(crate) fn motors_needed(channels: &[Channel], has_notices: bool) -> usize {
     let needed = channels.iter().map(Channel::motors_needed);
     needed.fold(usize::from(has_notices), usize::max)
@@ -298,8 +298,8 @@ impl Input {
     }
 }
 
-/// The division of an input by another input. With the statistic `x` of the input, its value is
-/// `x / max(per, at_least)`. The other input must not be a ratio itself.
+/// The division of an input by another input. The value of the input is `x / max(per, at_least)`, where `x` is its
+/// statistic. The other input must not be a ratio itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ratio {
     /// The index of the input to divide by.

@@ -1,4 +1,4 @@
-//! Checks whether a profile and its rule set fit together: errors, and likely mistakes.
+//! Checks whether a profile and its rule set fit together, and reports errors and likely mistakes.
 
 use alloc::{
     format,
@@ -297,9 +297,9 @@ fn thresholds(estimator: &Estimator, place: &[&str], at: &Places, found: &mut Ve
     }
 }
 
-/// The longest window without a warning, in seconds.
+/// A longer window, in seconds, causes a warning.
 const LONGEST_WINDOW_S: f64 = 600.0;
-/// The longest wait before a level is raised without a warning, in seconds.
+/// A longer `after_s` of a level, in seconds, causes a warning.
 const LONGEST_WAIT_S: f64 = 30.0;
 
 /// Finds windows and waits that are so long that their unit is probably wrong.
@@ -563,8 +563,8 @@ fn range_of_signal(source: &Source) -> (f64, f64) {
     }
 }
 
-/// Finds a number of a statistic in another unit: a threshold that the signal is always or never beyond, and a percentile
-/// as a share.
+/// Warns about a threshold or a percentile that seems to have another unit: a threshold that the signal never crosses,
+/// or a percentile between 0 and 1.
 fn number_of_statistic<'k>(
     input: &ProfileInput,
     unit_of: impl Fn(&str) -> Option<&'k str>,

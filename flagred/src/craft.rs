@@ -8,7 +8,7 @@ use crate::effort::Factors;
 pub struct Craft<'a> {
     /// The number of motors in each sample.
     pub motors: usize,
-    /// The names of the other signals of a sample, in order.
+    /// The names of the signals of a sample other than motor commands, in order.
     pub signals: &'a [&'a str],
     /// The subset of `signals` that the vehicle may never send. Until such a signal is known for
     /// the first time, an input with [`if_missing`](crate::profile::ProfileInput::if_missing) has
@@ -29,7 +29,7 @@ impl<'a> Craft<'a> {
         }
     }
 
-    /// Sets the names of the other signals of a sample, in order.
+    /// Sets the names of the signals of a sample other than motor commands, in order.
     pub const fn with_signals(self, signals: &'a [&'a str]) -> Craft<'a> {
         Craft { signals, ..self }
     }

@@ -42,7 +42,7 @@ struct Compiled {
     filling: Filling,
     /// For each input of the model its index in the profile; [`UNREAD`] if the risk does not depend on it.
     order: Vec<u32>,
-    /// The channels, for samples with the signals of the profile in its order.
+    /// The channels, for samples that have the signals of the profile in the order of the profile.
     channels: Vec<Channel>,
     inputs: Vec<Input>,
     propositions: Vec<Proposition>,
@@ -122,8 +122,8 @@ impl Estimator {
     ///
     /// # Errors
     ///
-    /// If the rule set does not compile or has type-2 terms, if the inputs of both differ, if the range of an output is
-    /// not a percentage, or if an output keeps its previous value.
+    /// If the rule set does not compile or has type-2 terms, if the profile and the rule set have different inputs, if
+    /// the range of an output is not a percentage, or if an output keeps its previous value.
     pub fn new(profile: &Profile, model: &Model) -> Result<Estimator, EstimatorError> {
         Estimator::with_engine(profile, &Engine::new(model)?)
     }
@@ -259,7 +259,8 @@ impl Estimator {
         self.0.output
     }
 
-    /// The smallest and the largest value that fills gaps for inputs within intervals, in the order of the model.
+    /// The smallest and the largest value that fills gaps while each input is within its interval. The inputs are in
+    /// the order of the model.
     pub(crate) fn filled_within(&self, inputs: &[Interval]) -> Option<Interval> {
         self.0.filling.lend()?.within(inputs)
     }
@@ -269,7 +270,7 @@ impl Estimator {
         &self.0.order
     }
 
-    /// The cause that raises the risk to `risk_pct` at values of the inputs, in the order of the profile.
+    /// The cause of a risk of `risk_pct` for given values of the inputs, in the order of the profile.
     pub(crate) fn cause(
         &self,
         inputs: &[f64],
@@ -298,7 +299,7 @@ impl Estimator {
     }
 
     /// The input and the term, with its hedges, of each proposition of the rules, in the order of
-    /// [`Plan::propositions`]. They name a [`Cause`].
+    /// [`Plan::propositions`]. [`Cause::proposition`] is an index into them.
     pub fn propositions(&self) -> impl ExactSizeIterator<Item = (&str, &str)> {
         let all = self.0.propositions.iter().zip(&self.0.said);
         all.map(|(said, AntecedentProposition { term, .. })| {
@@ -311,8 +312,8 @@ impl Estimator {
         })
     }
 
-    /// The risk at values of the inputs, in the order of the profile, as a monitor computes it. `None` if no rule
-    /// applies and nothing can be interpolated, or if a value that the risk depends on is not finite.
+    /// The risk for given values of the inputs, in the order of the profile, as a monitor computes it. `None` if no
+    /// rule applies and nothing can be interpolated, or if a value that the risk depends on is not finite.
     pub fn at(&self, inputs: &[f64]) -> Option<Estimate> {
         self.estimate(inputs, &mut Memory::of(self))
     }

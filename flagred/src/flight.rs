@@ -504,9 +504,8 @@ impl Flight {
         }
     }
 
-    /// The verdict. Without findings the flight is GOOD only if the risk was known for most of the
-    /// time in the air, the commands of all motors were known except for moments, and the clock
-    /// never went back.
+    /// The verdict. Without findings the flight is GOOD only if the risk was known for most of the time in the air, the
+    /// commands of all motors were known except for short periods, and the clock never went back.
     fn verdict(&self, summary: &Summary, profile: &Profile) -> Verdict {
         let knows_enough =
             summary.assessed_s > 0.0 && summary.assessed_s >= KNOWN_SHARE * summary.in_air_s;

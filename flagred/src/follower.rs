@@ -1,4 +1,5 @@
-//! The state of a flight, updated sample by sample in memory that the caller provides; all monitors share it.
+//! The state of a flight, updated sample by sample in memory that the caller provides. All kinds of monitors use this
+//! module.
 
 use crate::{
     accumulator::{Accumulator, AccumulatorSettings},
@@ -33,10 +34,10 @@ pub(crate) struct Follower {
     in_air_since_s: Option<f64>,
     /// Whether the windows have discarded the take-off.
     settled: bool,
-    /// Since when the vehicle seems to be on the ground, in seconds; the flight may continue within [`TOUCH_S`].
+    /// The time since which the vehicle seems to be on the ground, in seconds; the flight may continue within
+    /// [`TOUCH_S`].
     down_since_s: Option<f64>,
-    /// The state of idle motors, including whether a high risk preceded it; `None` while they do
-    /// not idle.
+    /// Whether motors that idle mean a landing or began to idle in trouble; `None` while they do not idle.
     idle: Option<Idle>,
     /// The last time at which the motors did not idle since the autopilot reported that the vehicle is on the ground,
     /// in seconds.
@@ -50,7 +51,8 @@ pub(crate) struct Follower {
     in_doubt_s: Option<f64>,
 }
 
-/// A land detector or idle motors must last for this time, in seconds, to count as a landing.
+/// The time in seconds for which the land detector must report the ground, or the motors must idle, to count as a
+/// landing.
 const TOUCH_S: f64 = 1.0;
 
 /// Motors that idle within this time after a high risk, in seconds, do not count as a landing.
@@ -147,7 +149,7 @@ impl Follower {
         &self.settings
     }
 
-    /// Processes a sample; `estimate` computes the risk at values of the inputs.
+    /// Processes a sample; `estimate` computes the risk for given values of the inputs.
     pub(crate) fn push(
         &mut self,
         feed: Feed<'_>,
@@ -390,7 +392,7 @@ impl Follower {
         idle == Idle::Landing && !self.falls
     }
 
-    /// Some time after take-off, discards the take-off from the long windows and the elevated risk.
+    /// Discards the take-off from the long windows and the elevated risk, once it has been over for `warm_up_s`.
     fn settle(&mut self, t_s: f64, in_air_since_s: f64, room: &mut FlightMemory<'_>) {
         let Sampling {
             take_off_s,
@@ -484,7 +486,7 @@ impl Follower {
     }
 }
 
-/// The reason why the risk is unknown if the command of a motor is; `None` if all commands are known.
+/// The reason why the risk is unknown if the command of a motor is unknown; `None` if all commands are known.
 fn unknown_motor(motors: &[Motor], commands: &[f64]) -> Option<Unknown> {
     let motor = motors.iter().position(|motor| motor.command.is_nan())?;
     let given = commands.get(motor).copied();

@@ -30,8 +30,8 @@ pub fn assess(flight: &Flight, estimator: &Estimator, step_s: Option<f64>) -> As
     })
 }
 
-/// As [`assess`], with the interval of the risk of each step ([`Assessor::with_intervals`]). For drawing and exporting
-/// steps; it takes longer.
+/// As [`assess`], with the interval of the risk of each step ([`Assessor::with_intervals`]). This takes longer;
+/// it is meant for drawing and exporting steps.
 pub fn assess_with_intervals(flight: &Flight, estimator: &Estimator, step_s: f64) -> Assessment {
     assess_by(flight, estimator, |craft| {
         Ok(Assessor::new(estimator, craft, Some(step_s))?.with_intervals())
@@ -126,7 +126,8 @@ fn assess_by(
     assessment
 }
 
-/// Whether a verdict is GOOD, or unknown because of the observed part of the flight.
+/// Whether a reboot in the air may hide a worse verdict: the verdict is GOOD, or NA for a reason in the observed part
+/// of the flight.
 fn is_in_doubt(verdict: &Verdict) -> bool {
     matches!(
         verdict,
@@ -210,7 +211,8 @@ fn step_s_of(flight: &Flight, signals: &[&str]) -> Option<f64> {
     steps.get(steps.len() / 2).copied()
 }
 
-/// Whether the autopilot reports at `t_s` that the vehicle is in the air; `None` if that is only assumed.
+/// Whether the autopilot reports at `t_s` that the vehicle is in the air; `None` if the time in the air is only derived
+/// or assumed.
 pub fn in_air(flight: &Flight, t_s: f64) -> Option<bool> {
     let is_assumed = flight.in_air.as_ref().is_some_and(|air| air.is_assumed);
     match flight.is_in_air(t_s) == Some(true) {

@@ -22,8 +22,8 @@ pub(crate) struct Lookup<'a> {
 }
 
 impl Lookup<'_> {
-    /// The risk at values of the inputs, in the order of the profile; `rules` evaluates the rule set, in its own order.
-    /// `None` if no rule applies and nothing is filled, or if a value is not finite.
+    /// The risk for given values of the inputs, in the order of the profile; `rules` evaluates the rule set for inputs in
+    /// the order of the rule set. `None` if no rule applies and nothing is filled, or if a value is not finite.
     pub(crate) fn estimate(
         &self,
         inputs: &[f64],

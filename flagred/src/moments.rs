@@ -168,8 +168,8 @@ impl Moments {
         self.known(libm::sqrt(self.steps / self.weight / 2.0))
     }
 
-    /// The standard deviation without that noise, `sqrt(max(0, std^2 - noise^2))`, from the part of the variance that
-    /// successive values share. `None` without a value.
+    /// The standard deviation without the [`noise`](Self::noise), `sqrt(max(0, std^2 - noise^2))`, from the part of the
+    /// variance that successive values share. `None` without a value.
     pub(crate) fn std_less_noise(&self) -> Option<f64> {
         let variance = (self.squares - self.steps / 2.0) / self.weight;
         self.known(libm::sqrt(variance.max(0.0)))

@@ -148,7 +148,7 @@ struct OwnRoom {
 }
 
 impl Monitor {
-    /// Creates a monitor of a craft. For a profile that reads no motors the craft may have none. Samples with empty
+    /// Creates a monitor of a craft. If the profile reads no motors, the craft may have no motors. Samples with empty
     /// `motors` then count as a vehicle in use, unless `in_air` is `Some(false)`.
     ///
     /// # Errors
@@ -287,8 +287,9 @@ impl Monitor {
         &self.room.inputs
     }
 
-    /// The intervals of 95 % of the inputs after the latest sample, in the order of the profile. An assumed value, and an
-    /// input that the risk does not depend on, has no width. `None` if the interval of another input is unknown.
+    /// The 95 % intervals of the inputs after the latest sample, in the order of the profile. The interval of an
+    /// assumed value has no width, nor has that of an input that the risk does not depend on. `None` if the interval of
+    /// another input is unknown.
     pub(crate) fn intervals(&self) -> Option<Vec<Interval>> {
         let (plan, seen) = ((&self.channels[..], &self.inputs[..]), &self.room.seen);
         let feed = Feed {

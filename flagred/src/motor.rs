@@ -6,8 +6,8 @@ use crate::{
     margin::{Side, margin},
 };
 
-/// The noise of commands is computed from means over times of this length, in seconds, so that it hardly depends on the
-/// rate of the log.
+/// The noise of commands is computed from means over periods of this length, in seconds, so that it hardly depends on
+/// the rate of the log.
 pub(crate) const BIN_S: f64 = 0.1;
 
 /// The number of the bin that contains `t_s`.
@@ -16,8 +16,8 @@ fn bin_of(t_s: f64) -> f64 {
     libm::floor(t_s / BIN_S + ROUNDING)
 }
 
-/// Commands up to this far outside [0, 1] are rounding errors or slightly exceeded limits. Larger ones have another
-/// unit, such as microseconds or percent.
+/// Commands up to this far outside [0, 1] are rounding errors or slightly exceeded limits. Commands further outside
+/// have another unit, such as microseconds or percent.
 #[cfg_attr(not(feature = "std"), expect(unreachable_pub))]
 pub const MOST_OUTSIDE: f64 = 0.5;
 
@@ -43,7 +43,8 @@ pub struct Motor {
     bin_before: f64,
     /// The difference between the command and the mean of all motors, averaged over the last seconds.
     pub(crate) difference: Average,
-    /// The same difference while the flight is calm, averaged over a longer time.
+    /// The difference between the command and the mean of all motors while the flight is calm, averaged over a longer
+    /// time.
     pub(crate) trim: Average,
     /// The time for which the command has been 0, in seconds.
     pub(crate) at_zero_s: f64,
@@ -146,8 +147,8 @@ impl MotorRecord {
     }
 }
 
-/// Sets the factors of each motor. If there are not factors for every motor, or if they do not separate the efforts,
-/// returns false and changes nothing: yaw is then not removed.
+/// Sets the factors of each motor. If a motor has no factors, or if the factors do not separate the efforts, returns
+/// false and changes nothing: yaw is then not removed.
 pub(crate) fn set_geometry(motors: &mut [Motor], factors: &[Factors]) -> bool {
     let normal = effort::normal(factors.iter().copied());
     let column = |factors| effort::column(&normal, factors);
@@ -218,8 +219,8 @@ pub(crate) fn forget_trims(motors: &mut [Motor]) {
     }
 }
 
-/// The command that a monitor uses for a motor: clamped to [0, 1] if it is at most [`MOST_OUTSIDE`] outside, as when
-/// logs are read; otherwise NaN (unknown).
+/// The command that a monitor uses for a motor: clamped to [0, 1] if it is at most [`MOST_OUTSIDE`] outside, as is done
+/// when logs are read; otherwise NaN (unknown).
 ///
 /// ```
 /// use flagred::monitor::counted;

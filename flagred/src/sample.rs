@@ -42,8 +42,8 @@ pub struct Update {
     /// The new level, if this sample changed the level; `None` if it did not, or if the new level
     /// is unknown.
     pub change: Option<Level>,
-    /// Whether the risk counts for levels, findings and the summary of a flight. It does not in the first seconds after
-    /// take-off. A landing also excludes the last seconds before it.
+    /// Whether the risk counts for levels, findings and the summary of a flight. It does not count in the first seconds
+    /// after take-off. A landing also excludes the last seconds before it.
     pub judged: bool,
     /// The findings that ended with this sample.
     pub ended: EndedFindings,
@@ -66,7 +66,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// The estimate while motors idle in the air: they cannot keep a vehicle up, whatever the rules compute.
+    /// The estimate while motors idle in the air: idle motors cannot keep a vehicle up, whatever the rules compute.
     pub(crate) const FALL: Estimate = Estimate {
         risk_pct: 100.0,
         coverage: 1.0,
@@ -109,7 +109,7 @@ pub enum Unknown {
     },
     /// The command of a motor is so far outside [0, 1] that it has another unit.
     CommandOutside {
-        /// The first motor with a command outside, counted from 0.
+        /// The first motor with such a command, counted from 0.
         motor: usize,
         /// The command of that motor.
         command: f64,
@@ -127,7 +127,8 @@ pub struct Sampling {
     /// A time without a sample longer than this, in seconds, resets the state.
     pub longest_gap_s: f64,
     /// The length of the take-off, in seconds. `warm_up_s` after it, the take-off is discarded from longer windows and
-    /// the elevated risk restarts, because the take-off is not typical of the flight. 0 keeps it.
+    /// the elevated risk restarts, because the take-off is not typical of the flight. If this is 0, nothing is
+    /// discarded.
     pub take_off_s: f64,
 }
 

@@ -1,4 +1,5 @@
-//! The sampling error of a mean over time: how far a mean of samples may be from the mean over all times between them.
+//! The sampling error of a mean over time: how far the mean of samples may be from the mean over the whole time that
+//! they cover.
 //!
 //! Samples of a signal over time are a systematic sample, and samples that follow each other are alike. So the error
 //! follows from the differences between successive samples and not from their standard deviation: a signal that moves
@@ -15,7 +16,7 @@ const NORMAL_QUANTILE: f64 = 1.959_964;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SampledMean {
     pub(crate) mean: f64,
-    /// Half of the two-sided interval of 95 %; infinite if there is only one value.
+    /// Half the width of the two-sided 95 % interval; infinite if there is only one value.
     pub(crate) half_width: f64,
 }
 

@@ -15,8 +15,8 @@ pub enum Signal {
     /// The effective command `e` of each motor: 0 at its lower limit, 1 at its upper limit.
     MotorCommand,
     /// The command of each motor without the part that commands yaw: `e_i - y_i yaw`, with the yaw factor `y_i` of the
-    /// motor and the yaw effort of all. If the geometry is unknown, the command itself; with a geometry, unknown while
-    /// any motor is unknown.
+    /// motor and the yaw effort of all motors. If the geometry is unknown, this is the command itself. If the geometry
+    /// is known, the value is unknown while any motor is unknown.
     MotorCommandLessYaw,
     /// The margin `min(e, 1 - e)` of each motor, 0 to 0.5.
     MotorMargin,

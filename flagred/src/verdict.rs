@@ -30,7 +30,7 @@ pub(crate) use notices::Notices;
 pub enum Level {
     /// No problem was found.
     Good,
-    /// Worth knowing but not dangerous: the flight is as good as without it.
+    /// Worth knowing but not dangerous: the verdict stays GOOD unless there is a more severe finding.
     Info,
     /// The pilot should pay attention.
     Warn,
@@ -61,7 +61,7 @@ pub enum Measure {
     ElevatedRisk,
     /// The noise of the motor commands, in % of their range.
     CommandNoise,
-    /// The reserve of the mean command to the upper limit, in % of the range.
+    /// The reserve: the distance of the mean command from the upper limit, in % of the range.
     Reserve,
     /// The shift of a motor's command, relative to the mean command of all motors, since earlier in the flight, in % of
     /// the range.
@@ -167,15 +167,15 @@ pub struct VerdictSettings {
     pub warn: LevelSettings,
     /// The conditions for FAIL.
     pub fail: LevelSettings,
-    /// A level is cleared when nothing has held it for this time, in seconds. The new level is the one that is held
-    /// then.
+    /// A level is cleared when nothing has held it for this time, in seconds, and is replaced by the level that is
+    /// still held.
     pub clear_after_s: f64,
     /// In this time after take-off, in seconds, only FAIL is raised; WARN does not count as reached.
     pub quiet_after_take_off_s: f64,
     /// A WARN that is raised in this time before touch-down, in seconds, is withdrawn, unless FAIL is being reached at
     /// touch-down.
     pub quiet_before_landing_s: f64,
-    /// While their mean effective command is below this, the motors idle: before take-off and after landing the vehicle
+    /// The motors idle while their mean effective command is below this. Before take-off and after landing the vehicle
     /// then counts as on the ground, even if the land detector lags. Motors that begin to idle within 2 s after a risk
     /// that reaches WARN do not count as a landing. Motors that idle for 3 s while the autopilot reports that the
     /// vehicle is in the air count as a fall, with a risk of 100 %.
@@ -202,7 +202,7 @@ pub struct Limit {
 pub struct NoticeSettings {
     /// The threshold on the noise of the commands: vibration, or gains that are too high.
     pub noise: Option<Limit>,
-    /// The threshold on the reserve of the mean command to the upper limit.
+    /// The threshold on the reserve, which is the distance of the mean command from the upper limit.
     pub reserve: Option<Limit>,
     /// The threshold on the shift of a motor's command, relative to the mean command of all motors, since earlier in
     /// the flight. It is doubled for the difference of opposite motors, and halved if a single motor is higher than

@@ -103,7 +103,7 @@ impl Window {
         }
     }
 
-    /// Resets it to an empty window over the last `length_s` seconds, in place.
+    /// Resets the window to an empty one over the last `length_s` seconds, in place.
     pub(crate) fn restart(&mut self, length_s: f64) {
         self.length_s = length_s;
         self.oldest = 0;
@@ -127,7 +127,7 @@ impl Window {
     /// Adds a sample at `t_s` that applies to the `held_s` seconds before; its moments have the total weight `held_s`.
     /// A sample with `held_s` of 0 does not count.
     ///
-    /// `t_s` must not decrease; a sample older than the newest one counts as if it had the time of that one.
+    /// `t_s` must not decrease; a sample older than the newest one is treated as if it had the time of the newest one.
     pub(crate) fn push(&mut self, t_s: f64, held_s: f64, moments: &Moments) {
         self.advance(t_s);
         if held_s <= 0.0 {

@@ -43,7 +43,7 @@ pub struct Diagnostic {
     pub span: Range<usize>,
     /// The line and column of the start of the span, if the text is known.
     pub position: Option<Position>,
-    /// A suggestion how to fix the problem.
+    /// A suggestion for how to fix the problem.
     pub help: Option<String>,
     /// Other positions that explain the problem.
     pub related: Vec<RelatedSpan>,
@@ -182,7 +182,7 @@ impl Diagnostic {
         }
     }
 
-    /// Adds a suggestion how to fix the problem.
+    /// Adds a suggestion for how to fix the problem.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(shortened(help.into(), LONGEST_ADVICE));

@@ -30,7 +30,7 @@ pub(crate) fn change<const L: usize>(numbers: &mut [f64; L], change: impl Fn(f64
     }
 }
 
-/// Combines the numbers of each row with other numbers.
+/// Combines the number of each row with the number of the same row in `others`.
 #[inline(always)]
 pub(crate) fn join<const L: usize>(
     numbers: &mut [f64; L],

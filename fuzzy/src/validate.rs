@@ -161,8 +161,7 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
     findings
 }
 
-/// Returns a finding if the model exceeds a limit. The analysis of larger models takes minutes, and they are never
-/// intended.
+/// Returns a finding if the model exceeds a limit. Larger models take minutes to analyse, and are never intended.
 fn too_large(model: &Model, spans: &Spans) -> Option<Diagnostic> {
     let variables = || model.variables();
     let all_spans = || spans.inputs.iter().chain(&spans.outputs);

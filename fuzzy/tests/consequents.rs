@@ -9,7 +9,7 @@
 
 use fuzzy::{Engine, Model};
 
-/// Returns a rule set with one input `x` in [0, 1] whose degree in `high` is its value.
+/// Returns a rule set with one input `x` in [0, 1]; the degree of `x` in the term `high` equals its value.
 fn model(outputs: &str, rules: &str) -> Model {
     let text = format!(
         "fuzzy: 1\nname: t\ninputs: {{x: {{range: [0, 1], terms: {{low: {{left_shoulder: [0, 1]}}, high: {{right_shoulder: [0, 1]}}}}}}}}\noutputs: {outputs}\nrules: {rules}"

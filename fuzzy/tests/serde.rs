@@ -160,7 +160,7 @@ fn both_parsers_read_every_rule_set_alike() {
     );
 }
 
-/// Tests the differences between the two readers.
+/// Tests texts that the two readers treat differently.
 #[test]
 fn tags_duplicates_and_numbers_are_handled() {
     let rule_set = |name: &str| {

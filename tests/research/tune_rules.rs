@@ -166,7 +166,7 @@ impl Candidate {
     }
 }
 
-/// Prints figures of risks in % for all data sets.
+/// Prints the scores of risks in %, for all sets of rows.
 fn print(rows: &[Row], risks_pct: &[f64], out: &mut impl Write) -> Result<()> {
     writeln!(
         out,

@@ -1,5 +1,5 @@
-//! A flight in wind: the risk from its motors beside the wind estimate of the autopilot and, if the log of a simulator contains
-//! it, the true wind.
+//! Draws a flight in wind: the risk from the motors, next to the wind estimate of the autopilot and, if the log of a
+//! simulator contains it, the true wind.
 //!
 //! `cargo run -p flagred-tests --example wind_experiment -- FLIGHT.BIN wind.svg`
 

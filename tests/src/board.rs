@@ -1,4 +1,4 @@
-//! Profiles, flights, and updates as text, to compare on-board monitors with.
+//! Profiles and flights for tests of on-board monitors, and their updates as text.
 
 use std::{fmt::Write, path::PathBuf};
 

@@ -26,8 +26,8 @@ pub const STEADY: &str = concat!(
     "/../examples/flights/steady.BIN"
 );
 
-/// The folder of reference data, if the environment variable `FLAGRED_SHARED` names its parent: for tests that run without it
-/// as well.
+/// The folder of reference data, if the environment variable `FLAGRED_SHARED` names its parent; for tests that also run
+/// without the data.
 pub fn shared_data() -> Option<PathBuf> {
     std::env::var_os("FLAGRED_SHARED").map(|folder| PathBuf::from(folder).join("data"))
 }

@@ -1,4 +1,4 @@
-//! Small writers of flight logs, for layouts without a log that may be redistributed.
+//! Small writers of flight logs, for layouts of which no log may be redistributed.
 
 /// A value of a field.
 #[derive(Debug, Clone, Copy)]
@@ -32,7 +32,7 @@ pub struct DataFlash {
 }
 
 impl DataFlash {
-    /// A log that defines FMT, like every log.
+    /// Creates a log that defines FMT, as every log must.
     pub fn new() -> Self {
         let mut log = Self::default();
         log.define(128, "FMT", "BBnNZ", "Type,Length,Name,Format,Columns");
@@ -157,7 +157,7 @@ impl ULog {
         self.message(b'A', &body);
     }
 
-    /// Writes data of a topic that consists of its time and floats.
+    /// Writes a data message of a topic that consists of a timestamp and floats.
     pub fn floats(&mut self, id: u16, time_us: u64, values: &[f32]) {
         let mut body = id.to_le_bytes().to_vec();
         body.extend(time_us.to_le_bytes());
@@ -165,7 +165,7 @@ impl ULog {
         self.message(b'D', &body);
     }
 
-    /// Writes data of a topic that consists of its time and bytes.
+    /// Writes a data message of a topic that consists of a timestamp and bytes.
     pub fn flags(&mut self, id: u16, time_us: u64, values: &[u8]) {
         let mut body = id.to_le_bytes().to_vec();
         body.extend(time_us.to_le_bytes());

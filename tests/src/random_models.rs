@@ -265,7 +265,8 @@ fn point(rng: &mut Rng, model: &Model) -> Vec<f64> {
     inputs.map(|v| between(rng, v.low, v.high)).collect()
 }
 
-/// Returns a number of models with three points each, for consecutive seeds.
+/// Returns `count` models, each with its seed and three points. The seeds ascend from `first`; those without a valid
+/// model are skipped.
 pub fn models(first: u64, count: usize) -> impl Iterator<Item = (u64, Model, Vec<Vec<f64>>)> {
     let models = (first..).filter_map(|seed| Some((seed, model(seed)?)));
     models.take(count).map(|(seed, model)| {

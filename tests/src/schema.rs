@@ -1,6 +1,7 @@
 //! Validation of JSON against the schemas that `flagred schema` prints.
 //!
-//! It supports the keywords that these use and fails on any other. A validator of all of JSON Schema needs some fifty packages.
+//! The validator supports the keywords that these schemas use, and fails on any other. A complete validator of JSON
+//! Schema would need about fifty packages.
 #![expect(
     clippy::unwrap_used,
     clippy::panic,

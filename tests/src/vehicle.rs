@@ -1,4 +1,5 @@
-//! A stand-in vehicle that replays a log over MAVLink.
+//! A stand-in vehicle that replays a log over MAVLink. "The other side" is the program that receives it, such as
+//! `flagred watch`.
 
 mod answers;
 mod heard;
@@ -50,7 +51,7 @@ pub struct StandIn {
     /// The progress of the other side. A flight at full speed waits for it, because the buffers of the machine would lose
     /// packets.
     pub progress: Option<Arc<Progress>>,
-    /// The number of ends of flights marked so far.
+    /// The number of flights whose end has been marked.
     marks: u8,
     /// The vehicle's clock at time 0 of the log, in seconds.
     pub clock_s: f64,
@@ -64,12 +65,13 @@ pub struct StandIn {
     pub every: Duration,
     /// Whether the vehicle sends motor commands at the rate that the other side requests.
     pub obeys: bool,
-    /// The offset of its motors from the outputs of the log.
+    /// The offset of the vehicle's motors from the outputs of the log.
     shift: usize,
 }
 
-/// The two kinds of packets in [`StandIn::random`].
+/// The index in [`StandIn::random`] for the packets of a flight.
 const FLIGHT: usize = 0;
+/// The index in [`StandIn::random`] for all other packets.
 const TALK: usize = 1;
 
 /// Half the time between two commands of a log.
@@ -112,8 +114,8 @@ impl StandIn {
         }
     }
 
-    /// Sends heartbeats until the other side reports that it knows the motors. If its output is not read, sends them until
-    /// the other side has sent a request.
+    /// Sends heartbeats until the other side reports that it knows the motors. If the test does not read the output of
+    /// the other side, sends heartbeats until the other side has sent a request.
     pub fn meet(&mut self) {
         let start = Instant::now();
         let is_met = |vehicle: &StandIn| match &vehicle.progress {
@@ -201,7 +203,8 @@ impl StandIn {
         }
     }
 
-    /// Waits until the other side has followed to the end: packets stay in order, and it reports a marker vehicle.
+    /// Sends a heartbeat of a marker vehicle and waits until the other side reports it. Packets stay in order, so the
+    /// other side has then followed to the end.
     pub fn settle(&mut self) {
         let Some(progress) = self.progress.clone() else {
             self.linger(Duration::from_millis(200));
@@ -221,7 +224,7 @@ impl StandIn {
         self.linger(Duration::from_millis(20));
     }
 
-    /// Waits so that at most two seconds of commands are in transit.
+    /// Waits until at most two seconds of commands are in transit.
     fn wait_for_the_other_side(&mut self, t_s: f64, in_air: bool) {
         self.wire.flush();
         let Some(progress) = self.progress.clone().filter(|_| in_air) else {
@@ -263,7 +266,7 @@ impl StandIn {
         self.stream.skipped()
     }
 
-    /// Forwards packets between its own wire and another, as an autopilot does between its links.
+    /// Forwards packets between the vehicle's wire and another, as an autopilot does between its links.
     pub fn forward_to(&mut self, wire: Wire) {
         self.other = Some((wire, Stream::new()));
     }

@@ -39,7 +39,7 @@ impl Drop for ChildProcess {
 pub struct Watch {
     child: ChildProcess,
     address: Option<SocketAddr>,
-    /// The reader of its output, without which the watch would block.
+    /// The reader of the watch's output, without which the watch would block.
     reader: JoinHandle<Vec<Value>>,
     progress: Arc<Progress>,
 }

@@ -1,4 +1,4 @@
-//! The wire between a stand-in vehicle and the other side, with losses.
+//! The connection between a stand-in vehicle and `flagred watch`, with losses.
 
 use std::{
     io::{ErrorKind, Read, Write},
@@ -28,11 +28,11 @@ pub enum Speed {
     Times(f64),
 }
 
-/// The wire to the other side.
+/// The connection to the other side.
 pub enum Wire {
     /// Datagrams.
     Udp(UdpSocket),
-    /// A connection, and the bytes still to be written: a radio too sends many small packets at once.
+    /// A TCP connection, and the bytes still to be written: a radio too sends many small packets at once.
     Tcp(TcpStream, Vec<u8>),
 }
 
@@ -40,11 +40,7 @@ pub enum Wire {
 const SEGMENT: usize = 1200;
 
 impl Wire {
-    /// Datagrams to `address`.
-    ///
-    /// # Panics
-    ///
-    /// If the machine has no loopback interface.
+    /// A socket that sends datagrams to `address`.
     pub fn udp(address: SocketAddr) -> Wire {
         let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
         socket.connect(address).unwrap();
@@ -52,11 +48,7 @@ impl Wire {
         Wire::Udp(socket)
     }
 
-    /// An open connection.
-    ///
-    /// # Panics
-    ///
-    /// If it cannot be configured.
+    /// A TCP connection that is already open.
     pub fn tcp(stream: TcpStream) -> Wire {
         stream.set_nodelay(true).unwrap();
         // The shortest read time-out is a tick of the kernel: milliseconds for every read.

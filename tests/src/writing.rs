@@ -22,8 +22,8 @@ pub struct WritingCommand {
     pub files: Vec<String>,
 }
 
-/// Returns a flight of the given length at 10 Hz, whose motors alternate between their limits:
-/// FAIL, unless it is short.
+/// Returns a flight of the given length at 10 Hz, whose motors alternate between their limits. The verdict is FAIL,
+/// unless the flight is short.
 pub fn wild_flight(length_s: u32) -> String {
     let mut log = "t_s,motor1,motor2,motor3,motor4,in_air\n".to_owned();
     for i in 0..length_s * 10 {

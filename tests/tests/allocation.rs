@@ -18,7 +18,7 @@ fn models() -> Vec<Model> {
     models
 }
 
-/// Evaluates points on the diagonal of the ranges of the inputs and beyond.
+/// Asserts that evaluations do not allocate, at points on the diagonal of the input ranges and one outside.
 fn assert_no_allocation(model: &Model) {
     let engine = Engine::new(model).unwrap();
     // A clone has the same capacity as the original scratch.

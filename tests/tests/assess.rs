@@ -206,7 +206,7 @@ fn a_truncated_log_is_assessed_to_its_end() {
     assert!((400..1000).contains(&steps.len()), "{}", steps.len());
 }
 
-/// Overwriting may hit the definitions of messages: then there is no verdict, with a reason. Otherwise the flight is assessed
+/// If overwriting hits the definitions of messages, the verdict is NA with a reason. Otherwise the flight is assessed
 /// from the remaining messages.
 #[test]
 fn a_log_with_1_percent_of_its_bytes_overwritten_is_assessed_or_refused_with_a_reason() {

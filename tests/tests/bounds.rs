@@ -103,7 +103,7 @@ fn texts_modes_and_parameters_beyond_the_limit_are_counted() {
     assert_eq!(log["modes"].as_array().unwrap().len(), 10_000);
 }
 
-/// `count` flights of a second each.
+/// Writes `count` flights of one second each.
 fn flights(out: &mut dyn Write, count: u32) {
     let mut log = copter();
     out.write_all(&log.bytes).unwrap();
@@ -154,7 +154,7 @@ fn too_many_take_offs_end_the_flight_and_all_outputs_report_it() {
     assert!(told.contains("exceeds the limits of the reader"), "{told}");
 }
 
-/// Without events, the commands indicate take-offs, possibly at every row.
+/// Without events, take-offs are detected from the commands, possibly at every row.
 #[cfg(unix)]
 #[test]
 fn take_offs_seen_only_in_the_commands_are_counted() {
@@ -241,7 +241,7 @@ fn texts_of_a_telemetry_log_are_bounded() {
     assert_eq!(log["messages"].as_array().unwrap().len(), 10_000);
 }
 
-/// A flight with a step at every sample.
+/// Writes a flight CSV of `rows` rows at 100 Hz.
 #[cfg(unix)]
 fn long_flight(out: &mut dyn Write, rows: u32) {
     out.write_all(b"# pwm_low_us: 1000\n# pwm_high_us: 2000\nt_s,pwm1,pwm2,pwm3,pwm4\n")
@@ -743,7 +743,7 @@ fn names_that_repeat_are_found_in_time() {
     );
 }
 
-/// Passes one cell without end, and a header with many columns, to every reader of tables.
+/// Passes one endless cell, and a header with many columns, to every reader of tables.
 #[cfg(unix)]
 #[test]
 fn tables_are_bounded() {

@@ -1,4 +1,4 @@
-//! One meaning, many paths: the corpus in `tests/conformance` with every way of evaluation.
+//! Every way of evaluation gives the same values for the corpus in `tests/conformance`.
 //!
 //! A file contains a rule set and, after `---`, its cases: operators that differ from those of the rule set,
 //! a point, and the values there. The values come from the integration in `flagred_tests::reference` with
@@ -15,7 +15,8 @@ use fuzzy::model::{Aggregation, Conjunction, Defuzzifier, Disjunction, Model};
 
 /// Tolerance of the engine, relative to the range of the output.
 const ENGINE: f64 = 1e-9;
-/// Tolerance of the engine for maxima: the expected values are only as precise as the distance of [`MANY`] samples.
+/// Tolerance of the engine for maxima: the expected values are only as precise as the distance between [`MANY`]
+/// samples.
 const ENGINE_MAXIMA: f64 = 1e-5;
 /// Number of samples of the plain integration in tests.
 const FEW: usize = 4_000;
@@ -52,7 +53,7 @@ fn parts(file: &Path) -> (Model, String) {
     (document.model, cases.into())
 }
 
-/// `- {and: product, defuzzifier: bisector, at: [0.1, 0.2], is: [3.5, none]}`
+/// Parses a case, such as `- {and: product, defuzzifier: bisector, at: [0.1, 0.2], is: [3.5, none]}`.
 fn case(model: &Model, line: &str, place: String) -> Case {
     let mut case = Case {
         model: model.clone(),
@@ -256,9 +257,10 @@ fn bless() {
     }
 }
 
-/// The outcomes of the corpus, bit for bit, one line per case: its file, its index in the file, and for each output the bits of
-/// value and coverage, the index of the dominant rule, and whether an input was clamped. Libraries for other languages are
-/// compared with it. `UPDATE_BITS=1 cargo test -p flagred-tests --test conformance` writes it.
+/// The outcomes of the corpus, bit for bit, one line per case: its file, its index in the file, and for each output the
+/// bits of value and coverage, the index of the dominant rule, and whether an input was clamped. Libraries for other
+/// languages are compared with the file. `UPDATE_BITS=1 cargo test -p flagred-tests --test conformance` writes the
+/// file.
 #[test]
 fn the_bits_of_the_corpus_are_those_on_file() {
     let mut lines = String::new();

@@ -1,4 +1,4 @@
-//! `flagred validate` from a user's point of view, and figures of the shipped rules on the simulated flights.
+//! `flagred validate` from a user's point of view, and scores of the shipped rules on the simulated flights.
 
 use std::{fmt::Write as _, fs, process::Output};
 
@@ -131,7 +131,7 @@ fn flights_are_compared_step_by_step_and_episode_by_episode() {
     );
 }
 
-/// A minute in the air at 25 Hz without assessed times in its header; from `upset_s` on it rolls over.
+/// A minute in the air at 25 Hz without assessed times in its header; from `upset_s` on the vehicle rolls over.
 fn real_flight(vehicle: &str, upset_s: Option<f64>) -> String {
     let mut text = format!(
         "# vehicle_id: {vehicle}\n# pwm_low_us: 1000\n# pwm_high_us: 2000\n\
@@ -342,8 +342,8 @@ fn whole_flights_are_evaluated_from_a_table() {
     assert_eq!(output.status.code(), Some(2));
 }
 
-/// The documented figures of the shipped rules, on the flights they were learned from; `leave_vehicles_out.rs` has
-/// those on held-out vehicles.
+/// The documented scores of the shipped rules, on the flights they were learned from; `leave_vehicles_out.rs` has the
+/// scores on held-out vehicles.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
 fn the_shipped_rules_on_the_simulated_flights() {

@@ -362,9 +362,10 @@ enum Fault {
 
 struct Round {
     writing: WritingCommand,
-    /// The final contents of the files, and the duration.
+    /// The contents of the files that the command wrote without a fault.
     new: Vec<Vec<u8>>,
     code: Option<i32>,
+    /// The duration of the command without a fault.
     time: Duration,
 }
 

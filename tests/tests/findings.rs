@@ -81,8 +81,8 @@ fn every_short_text_fits_with_the_largest_numbers() {
     }
 }
 
-/// The reliability of the shipped profiles is measured on held-out vehicles by `scripts/learn-flagred`, in another way than by
-/// `flagred validate`, whose rules know these vehicles. The shares differ by at most 10 points.
+/// The reliability of the shipped profiles is measured on held-out vehicles by `scripts/learn-flagred`, whereas
+/// `flagred validate` uses rules that were learned from these vehicles. The shares of both differ by at most 10 points.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
 fn the_reliability_is_near_that_of_rules_that_know_the_vehicles() {

@@ -155,8 +155,8 @@ fn impossible_limits_are_refused() {
     }
 }
 
-/// A truncated number is a number too: a last row without its line end is not used. Every command
-/// reports that the end is missing.
+/// A truncated number still looks like a number, so a last row without a line end is not used. Every command reports
+/// that the end is missing.
 #[test]
 fn an_incomplete_last_row_counts_as_truncation() {
     let whole =

@@ -207,7 +207,7 @@ fn explain_and_check() {
     assert_eq!(document["model"], Value::Null);
 }
 
-/// The parts of the SARIF 2.1.0 schema that a reader of findings needs.
+/// Verifies the parts of the SARIF 2.1.0 schema that a reader of findings needs.
 #[test]
 fn check_as_sarif() {
     let folder = Folder::new();

@@ -94,7 +94,7 @@ fn columns_without_a_name_are_ignored() {
     }
 }
 
-/// Sums of such weights overflowed: every rule had the same consequent, and the error was NaN.
+/// When such weights were accepted, their sums overflowed: every rule had the same consequent, and the error was NaN.
 #[test]
 fn weights_whose_sums_overflow_are_refused_as_by_tune() {
     let folder = Folder::new();

@@ -1,4 +1,4 @@
-//! Figures of tuned rules on held-out vehicles.
+//! Scores of tuned rules on held-out vehicles.
 //!
 //! Each real vehicle is a fold, and the simulated ones are distributed over these folds. For each fold, the rules are tuned on
 //! the rows of all others, exactly as `scripts/learn-flagred` tunes them on all, and compute the risks of the held-out vehicles.

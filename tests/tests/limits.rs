@@ -32,7 +32,7 @@ fn run(arguments: &[&str]) -> Output {
     output
 }
 
-/// Asserts that a call ends with exit code 3 and prints this on standard error.
+/// Asserts that a call ends with exit code 3 and prints `said` on standard error.
 fn refused(arguments: &[&str], said: &str) {
     let output = run(arguments);
     let told = String::from_utf8(output.stderr).unwrap();

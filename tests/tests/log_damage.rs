@@ -46,7 +46,7 @@ fn damaged_real_logs() {
     }
 }
 
-/// If a tenth of the file is damaged, all rows that are still intact must be read: a hole loses only the records in it.
+/// If a tenth of the file is damaged, all rows that are still intact must be read.
 #[test]
 fn a_hole_loses_only_the_rows_in_it() {
     let logs = [

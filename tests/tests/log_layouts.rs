@@ -39,7 +39,8 @@ fn outputs(flight: &Flight) -> Vec<(u16, &str)> {
         .collect()
 }
 
-/// A quad with labels `stem`1.., times in `clock`, and rows 100 ms apart.
+/// The log of a quad whose outputs are labelled `stem` with a number from 1, with times in `clock` and rows 100 ms
+/// apart.
 fn quad(stem: &str, clock: &str, parameters: &[(&str, f64)]) -> DataFlash {
     let mut log = DataFlash::new();
     let (kind, per_s) = match clock {
@@ -62,7 +63,8 @@ fn quad(stem: &str, clock: &str, parameters: &[(&str, f64)]) -> DataFlash {
     log
 }
 
-/// Armed at `from_s`, in the air a second later for two seconds.
+/// Writes a flight that is armed at `from_s`, and in the air from a second later for two seconds. `per_s` is the number
+/// of units of the clock per second.
 fn fly(log: &mut DataFlash, per_s: f64, from_s: f64) {
     let event = |log: &mut DataFlash, t_s: f64, id: f64| {
         log.write("EV", [Value::Number((t_s * per_s).round()), id.into()]);

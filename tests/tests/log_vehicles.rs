@@ -201,7 +201,7 @@ fn an_ardupilot_vehicle_is_found_by_its_heartbeats() {
 
 /// The id of the board is the one that PX4 writes into its own logs.
 #[test]
-fn packets_of_other_vehicles_are_ignored() {
+fn the_vehicle_of_a_px4_log_is_identified_by_its_board() {
     let mut vehicle = Vehicle::default();
     vehicle.heartbeat(0.0, PX4, false, 3);
     vehicle.parameter("STAT_BOOTCNT", 81_i32.to_le_bytes(), 6);

@@ -80,8 +80,8 @@ fn compare_range(log: &str, range: &Range, low: &Value, high: &Value) {
     );
 }
 
-/// For rows without their own time, the reference uses the time of the preceding GPS message,
-/// in UTC; ours are interpolated up to the next one, on the clock since boot.
+/// For rows without their own time, the reference uses the time of the preceding GPS message, in UTC; our times are
+/// interpolated between GPS messages, on the clock since boot.
 fn has_times(log: &str) -> bool {
     log != "aptxt_mechanical_fail.log"
 }
@@ -158,8 +158,8 @@ fn compare_attitude(log: &str, flight: &Flight, truth: &HashMap<String, Vec<Opti
     }
 }
 
-/// Logs that pause while disarmed. The reference counts a pause after a last row in the air
-/// as flight time, 628 s and 55 s; according to the events, the craft was on the ground.
+/// Logs that pause while disarmed. The reference counts a pause as flight time (628 s and 55 s) if the row before it is
+/// in the air; according to the events, the craft was on the ground.
 const PAUSES_ON_THE_GROUND: &[&str] = &["ap_beast_sample.bin", "ap_maik17.bin"];
 
 fn seconds_by_rows(flight: &Flight) -> f64 {
@@ -348,8 +348,8 @@ fn logs_without_a_verdict_report_the_reason() {
     }
 }
 
-/// Numbers that pymavlink 2.4.50 reads from the log, on the vehicle's clock: one packet of each message comes 1.2 s late, so two
-/// rows that are not later than the preceding ones are missing.
+/// Numbers that pymavlink 2.4.50 reads from the log, on the vehicle's clock: one packet of each message arrives 1.2 s
+/// late, so two rows that are not later than the preceding ones are missing.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
 fn telemetry_agrees_with_the_pymavlink_reference() {
@@ -398,8 +398,8 @@ fn flight_csv_series_are_read_completely() {
     flight.statistics().unwrap();
 }
 
-/// Commands computed from torque and thrust set points, compared with those that PX4 recorded: in a copy of the log, the topics
-/// of motors have other names.
+/// Commands computed from torque and thrust set points, compared with those that PX4 recorded. They are computed for a
+/// copy of the log in which the topics of motors have other names.
 #[test]
 #[ignore = "needs FLAGRED_SHARED, the folder with reference data"]
 fn computed_motor_commands_are_those_of_px4() {

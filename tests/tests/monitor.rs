@@ -5,7 +5,8 @@ use flagred::{
     shipped,
 };
 
-/// Eight motors that compensate gusts at 50 Hz, take off and land, lose their link and send garbage.
+/// Sets the commands of eight motors at 50 Hz, and returns the time in seconds and whether the vehicle is in the air.
+/// The vehicle compensates gusts, lands and takes off, loses its link, and sends NaN for a motor.
 fn sample(i: u32, motors: &mut [f64; 8]) -> (f64, bool) {
     let t_s = f64::from(i) * 0.02 + if i > 6000 { 60.0 } else { 0.0 };
     for (n, motor) in motors.iter_mut().enumerate() {

@@ -19,7 +19,7 @@ struct MonitorResults {
     findings: Vec<Finding>,
     /// The level after each sample in the air, with its time.
     levels: Vec<(f64, Option<Level>)>,
-    /// Times at which the risk was unknown and the level GOOD.
+    /// Times, in seconds, at which the risk was unknown and the level was GOOD.
     good_and_unknown_s: Vec<f64>,
 }
 
@@ -141,9 +141,9 @@ fn wind_and_manoeuvres_are_not_reported_as_a_weak_motor() {
     }
 }
 
-/// Flights with a finding about a weak motor that is not a motor fault: a flight with an upset of another kind; a
+/// Flights without a motor fault that have a finding about a weak motor: a flight with an upset of another kind; a
 /// landing after which the motors run for seconds on the ground; a craft that leans into rising wind and, after FAIL,
-/// no longer does (8 %, for 8 s); and a real flight with FAIL that a pilot turns over in ACRO, 6 s before its end.
+/// no longer does (8 %, for 8 s); and a real flight that a pilot turns over in ACRO, with FAIL, 6 s before its end.
 const NOT_FAULTS: [&str; 4] = ["f240", "n240", "f068", "dronekit_test_01"];
 
 #[test]
@@ -212,8 +212,8 @@ const OCTAQUAD: [Factors; 8] = [
 /// A start time in seconds, and from then on the commands relative to 0.55.
 type Phase<'a> = (f64, &'a [f64]);
 
-/// Flies phases at 50 Hz until a time, with a little noise, and lands; samples in `gap` are omitted. The same flight runs on
-/// board.
+/// Flies phases at 50 Hz until a time, with a little noise, and lands; samples in `gap` are omitted. The on-board
+/// monitor must give the same results.
 fn fly(
     factors: &[Factors],
     phases: &[Phase<'_>],
@@ -496,7 +496,8 @@ fn a_fall_is_not_taken_for_a_landing() {
     assert!(failed_s.is_some_and(|s| s < 1.8), "{failed_s:?}");
 }
 
-/// Landings with a weak motor: the end of FAIL, in seconds of the vehicle's clock. The throttle is closed later.
+/// Landings with a weak motor, each with the time at which FAIL ends, in seconds of the vehicle's clock. The throttle
+/// is closed later.
 const LANDINGS: [(&str, f64); 4] = [
     ("motor_y6_m2_0.BIN.gz", 162.5),
     ("motor_hexa_m3_60.BIN.gz", 182.5),

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 /// The maximum memory in bytes for a single input, and also for the whole process.
 const MEMORY: u64 = 256 << 20;
 
-/// Prints the seed of the input if it panics.
+/// Prints the name of the target and the seed of the input if the target panics.
 struct SeedReport<'t>(&'t Target, u64);
 
 impl Drop for SeedReport<'_> {
@@ -92,7 +92,7 @@ fn a_million_damaged_inputs_cause_no_panic() {
     survive(1_000_000, Duration::from_secs(1));
 }
 
-/// Zeros are compressed to a thousandth, so a small file can contain a huge log.
+/// Zeros are compressed to a thousandth of their size, so a small file can contain a huge log.
 #[test]
 fn a_log_of_zeros_takes_little_memory() {
     let mut packed = GzEncoder::new(Vec::new(), Compression::fast());

@@ -33,7 +33,7 @@ fn with_rounding(model: &Model) -> Model {
     model
 }
 
-/// Compares this many models from a first seed on.
+/// Compares `count` models, with seeds from `first` on.
 fn compare(first: u64, count: usize) -> Tally {
     let mut tally = Tally::default();
     for (seed, model, points) in models(first, count) {

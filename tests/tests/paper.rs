@@ -32,8 +32,9 @@ fn worked_example() {
     assert_abs_diff_eq!(very_low * high * risk, 0.577186, epsilon = 1e-5);
 }
 
-/// The decision map of the printed rules before any gap is filled: minimum, minimum, maximum, exact centroid, no
-/// weights. Risk in %, rows by spread, columns by margin; computed independently of this project.
+/// The decision map of the printed rules before any gap is filled: AND and implication are the minimum, aggregation is
+/// the maximum; exact centroid, no weights. Risk in %, rows by spread, columns by margin; computed independently of
+/// this project.
 #[test]
 fn decision_map() {
     const MARGIN: [f64; 9] = [0.0, 0.03, 0.05, 0.10, 0.15, 0.20, 0.25, 0.30, 0.50];

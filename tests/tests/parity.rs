@@ -107,8 +107,8 @@ fn centroids_equal_the_closed_form() {
     }
 }
 
-/// With the same midpoints, the results equal those of fuzzylite except for small firing strengths: it treats 1e-6 and less
-/// as 0. The possible difference is bounded by these strengths.
+/// With the same midpoints, the results equal those of fuzzylite except for small firing strengths: fuzzylite treats
+/// 1e-6 and less as 0. The possible difference is bounded by these strengths.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
 fn a_thousand_midpoints_equal_fuzzylite() {

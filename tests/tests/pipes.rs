@@ -18,7 +18,7 @@ use flagred_tests::{
     writing::{RULES, wild_flight},
 };
 
-/// The exit code and errors of a command whose reader takes this many bytes of its output, or all.
+/// The exit code and errors of a command whose reader takes `read` bytes of its output, or the whole output.
 fn ended(arguments: &[&str], read: Option<usize>) -> (Option<i32>, String) {
     let mut child = flagred()
         .args(arguments)
@@ -132,7 +132,7 @@ fn reports_are_written_despite_a_closed_pipe() {
     }
 }
 
-/// Without a reader the pipe is full, but the report is written.
+/// If nobody reads, the pipe becomes full, but the report is written.
 #[test]
 fn reports_are_written_before_a_full_pipe_blocks() {
     let folder = Folder::new();

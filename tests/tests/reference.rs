@@ -1,4 +1,5 @@
-//! The shipped profile compared with a second implementation of the documents: `flagred_tests::reference`.
+//! The shipped profile compared with a second implementation of the definitions in the documents:
+//! `flagred_tests::reference`.
 
 use std::f64::consts::TAU;
 

@@ -145,7 +145,8 @@ rules: [IF food IS bad THEN tip IS small, IF food IS good THEN tip IS large]
     assert!(short.0 < short.1);
 }
 
-/// Sums over samples, as the papers print them, of a set between a trapezoid from 1 to 9 and a triangle of height 0.5.
+/// The formulas of the papers, as sums over samples, for a set between a trapezoid from 1 to 9 and a triangle of height
+/// 0.5.
 #[test]
 fn type_reductions_have_their_published_formulas() {
     let text = |method: &str| {

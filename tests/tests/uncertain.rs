@@ -7,8 +7,8 @@ use flagred_tests::random_type2::{OutputTermKind, model};
 use fuzzy::engine::Interval;
 use fuzzy::{Engine, Model};
 
-/// Evaluates `points` random points inside random intervals of the inputs. Returns the width of the interval of each
-/// output as a share of the width of the values, if the values differ.
+/// Evaluates `points` random points inside random intervals of the inputs. Returns the ratio of the width of the
+/// interval of each output to the range of its values, if the values differ.
 fn compare(seed: u64, model: &Model, points: usize, most: f64) -> Vec<f64> {
     let rng = &mut Rng::with_seed(seed);
     let engine = Engine::new(model).unwrap();

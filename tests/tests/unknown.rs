@@ -111,7 +111,7 @@ fn a_motor_without_commands_for_a_while_prevents_a_verdict_unless_the_flight_fai
 }
 
 /// A DataFlash log of a hexacopter: parameters, then rows of outputs from `outputs(t_s)` at 25 Hz. It takes off at 1 s.
-/// `clock_back` is a time and by how much the clock goes back then.
+/// `clock_back` is a time, and the amount in seconds by which the clock goes back at that time.
 fn dataflash(outputs: impl Fn(f64) -> [u16; 6], clock_back: Option<(f64, f64)>) -> Vec<u8> {
     let mut log = DataFlash::new();
     log.define(129, "PARM", "QNf", "TimeUS,Name,Value");
@@ -169,7 +169,7 @@ fn outputs_that_are_not_pulses_prevent_a_verdict() {
     }
 }
 
-/// On a live link, the same event is `lost_in_air`: docs/live.md.
+/// On a live link, the same event is reported as `lost_in_air` (docs/live.md).
 #[test]
 fn a_clock_that_goes_back_in_the_air_prevents_a_verdict() {
     let calm = |_| [1500; 6];

@@ -24,7 +24,7 @@ fn links() -> [Link; 3] {
     [Link::default(), bad(0.05), bad(0.3)]
 }
 
-/// A log over UDP and TCP and over bad links: the verdict is that of `assess`.
+/// Replays a log over UDP, over TCP and over bad links: the verdict is that of `assess`.
 fn every_link_gives_the_verdict_of_assess(log: &Path) {
     let flight = flight(log);
     let assessed = assess(log);

@@ -201,7 +201,8 @@ fn cpu_s(process: u32) -> f64 {
     ticks.sum::<f64>() / 100.0
 }
 
-/// The sum of the shares of packets that each vehicle lost; on a busy machine, the system drops some.
+/// Verifies the results, and returns the sum over all vehicles of the share of lost packets. On a busy machine, the
+/// system drops some packets.
 fn check(results: &WatchResults, seconds: u32) -> f64 {
     let summaries: Vec<&Value> = (results.lines.iter())
         .filter(|line| line["verdict"].is_string())

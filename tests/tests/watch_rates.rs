@@ -1,5 +1,5 @@
-//! `flagred watch` of vehicles that send motor commands too rarely, that others slow down, and whose motors are on other
-//! outputs.
+//! `flagred watch` of vehicles that send motor commands too rarely, that another station slows down, or whose motors
+//! are on other outputs.
 
 use std::{path::Path, time::Duration};
 

@@ -72,7 +72,7 @@ impl Replay {
             .filter(move |event| event["event"] == name)
     }
 
-    /// The worst verdict of its flights; an unknown one counts only if all are unknown.
+    /// The worst verdict of the flights; NA counts only if all verdicts are NA.
     fn verdict(&self) -> String {
         let ends = ["landed", "left_in_air", "lost_in_air"];
         let over = ends.iter().flat_map(|name| self.all(name));
@@ -164,7 +164,6 @@ fn px4_streams_have_the_battery_risk_of_assess() {
     }
 }
 
-/// In the streams of ArduPilot's simulator, everything is known, except in those without a parameter.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
 fn ardupilot_streams_get_the_verdict_of_assess() {

@@ -376,8 +376,8 @@ fn an_unknown_risk_is_not_good() {
     assert_eq!(said.code, Some(3));
 }
 
-/// Neither a link that breaks in the air nor a watch that is ended then counts as a landing. Only the broken link prevents a
-/// verdict, because the watch that is ended has received everything until then.
+/// Neither a link that breaks in the air nor a watch that is ended in the air counts as a landing. Only the broken link
+/// prevents a verdict, because a watch that is ended has received everything up to its end.
 #[test]
 fn a_flight_whose_end_was_not_received_is_not_reported_as_landed() {
     let flight = flight(Path::new(STEADY));

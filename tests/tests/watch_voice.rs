@@ -9,8 +9,8 @@ use flagred_tests::{
     wire::{Link, Speed},
 };
 
-/// The delay from a motor command to its risk on the wire, in ms, for the values sent in this many seconds at 50 Hz, in
-/// order.
+/// The delays from a motor command to its risk on the wire, in ms and ascending, for the values sent in `seconds`
+/// seconds at 50 Hz.
 fn late_ms(seconds: f64) -> Vec<f64> {
     let flight = flight(Path::new(STEADY));
     let watch = Watch::udp(&[]);

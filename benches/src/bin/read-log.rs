@@ -29,15 +29,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// The CPU time of this process in seconds, as for the other programs: wall-clock time
-/// includes the load of other processes. Linux reports it in nanoseconds, but updates it rarely.
+/// The CPU time of this process in seconds. CPU time is measured for the other programs too, because wall-clock time
+/// includes the load of other processes. Linux reports CPU time in nanoseconds, but updates it rarely.
 fn cpu_s() -> Result<f64, Box<dyn std::error::Error>> {
     let used = std::fs::read_to_string("/proc/self/schedstat")?;
     let ns = used.split_whitespace().next().ok_or("no CPU time")?;
     Ok(ns.parse::<f64>()? * 1e-9)
 }
 
-/// The peak memory of the process, if the system reports it.
+/// The peak memory of the process in KiB; 0 if the system does not report it.
 fn peak_kib() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));

@@ -128,7 +128,7 @@ impl Plan {
         bytes.ok_or(Status::MemorySize)
     }
 
-    /// The plan, with its channels and inputs converted into the block.
+    /// Converts the plan. The converted channels and inputs are stored in the block.
     ///
     /// # Safety
     /// The arrays must have the stated lengths, and must not change.

@@ -112,7 +112,8 @@ fn import_batch(capsules: &Bound<'_, PyAny>) -> PyResult<ForeignTable> {
     })
 }
 
-/// An ArrowSchema according to the C data interface, which never changes; `arrow` does not expose whether it is released.
+/// The layout of `ArrowSchema` in Arrow's C data interface, which never changes. The crate `arrow` does not expose
+/// whether a schema is released.
 #[repr(C)]
 struct SchemaLayout {
     texts: [*const c_void; 3],

@@ -36,7 +36,7 @@ pub(crate) struct CompiledRuleSet {
     inputs: Vec<Py<PyString>>,
 }
 
-/// The scratch memory of a rule set for single evaluations. Each thread keeps it for the rule sets that it used last.
+/// The scratch memory of a rule set for single evaluations. Each thread caches it for a few rule sets.
 struct CachedScratch {
     id: u64,
     scratch: Scratch,
@@ -51,9 +51,9 @@ const MOST_KEPT: usize = 8;
 
 /// The values to evaluate: numbers, or a value for each row.
 pub(crate) enum Inputs<'py> {
-    /// Values in the order of the inputs.
+    /// One number for each input, in the order of the inputs.
     Numbers(Vec<f64>),
-    /// Values in the order of the inputs.
+    /// One array for each input, in the order of the inputs.
     Arrays(Vec<Bound<'py, PyAny>>),
     /// A table, or a dict by the names of the inputs.
     Frame(Bound<'py, PyAny>),
@@ -161,7 +161,7 @@ impl CompiledRuleSet {
         })?
     }
 
-    /// Evaluates inputs, each of which is a number or a pair of the ends of an interval.
+    /// Evaluates inputs that are numbers or intervals. An interval is a pair `(low, high)`.
     pub(crate) fn intervals<'py>(
         &self,
         py: Python<'py>,
@@ -211,7 +211,7 @@ impl CompiledRuleSet {
         })
     }
 
-    /// The only item, or a dict by the names of the outputs.
+    /// Returns the item of the only output, or a dict of items by the names of the outputs.
     fn by_output<'py, T: IntoPyObject<'py>>(
         &self,
         py: Python<'py>,

@@ -59,7 +59,7 @@ enum Source {
     Path(PathBuf),
 }
 
-/// The reason why the work gave no result.
+/// The reason why an evaluation failed.
 enum EvaluationFailure {
     Flight(FlightError),
     NoSteps,
@@ -94,8 +94,8 @@ fn estimators(py: Python<'_>, asked: &[PyRef<'_, Profile>]) -> PyResult<Estimato
     Ok(estimators)
 }
 
-/// The flights and files in their order, including those in folders, and whether each was named itself: a folder may contain
-/// files that are not flights.
+/// Replaces folders by the files in them. Also returns whether each flight or file was named explicitly, because a folder
+/// may contain files that are not flights.
 fn named(logs: Vec<Source>) -> Result<Vec<(Source, bool)>, EvaluationFailure> {
     let mut found = Vec::new();
     for log in logs {

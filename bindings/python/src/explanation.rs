@@ -34,7 +34,7 @@ pub(crate) struct ExplainedInput {
     name: String,
     /// The given value.
     given: f64,
-    /// The used value: the end of the range if the given one is outside.
+    /// The value that was used: the given one, clamped to the range.
     value: f64,
     /// The degree of each term, in [0, 1].
     terms: Py<PyDict>,
@@ -62,9 +62,9 @@ pub(crate) struct ExplainedOutput {
     name: String,
     /// The value; None if it is unknown.
     value: Option<f64>,
-    /// The lower end of the interval whose middle is the value, if interval type-2 terms determine it.
+    /// The lower end of the interval whose middle is the value; None without interval type-2 terms.
     low: Option<f64>,
-    /// The upper end of that interval.
+    /// The upper end of the interval whose middle is the value; None without interval type-2 terms.
     high: Option<f64>,
     /// Whether no rule fires and the value is the model's default.
     is_default: bool,

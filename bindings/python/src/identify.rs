@@ -56,14 +56,14 @@ impl IdentifyOptions {
     }
 }
 
-/// A figure and its interval.
+/// A figure and the ends of its confidence interval.
 type Figure = (f64, f64, f64);
 
 /// The result inside `flagred.types.IdentifyResult`.
 #[derive(IntoPyObject)]
 pub(crate) struct IdentifyResult {
     model: String,
-    /// The selected inputs, their numbers of terms, and the cross-validation error.
+    /// For each step of the search: the input, its number of terms, and the cross-validation error.
     steps: Vec<(String, usize, f64)>,
     without_rows: usize,
     validation: Option<IdentifyValidation>,

@@ -107,7 +107,7 @@ impl DecisionMap {
             .reshape(self.shape())
     }
 
-    /// The rule number with that strength, from 1; masked if no rule fires.
+    /// The number of the rule with the largest firing strength in each cell, from 1; masked if no rule fires.
     #[getter]
     fn dominant_rule<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let rules = self

@@ -14,11 +14,11 @@ pub(crate) struct Outcome {
     value: Option<f64>,
     /// The lower end of the interval of an output that depends on type-2 terms; otherwise the value.
     low: Option<f64>,
-    /// The upper end of that interval.
+    /// The upper end of the interval of an output that depends on type-2 terms; otherwise the value.
     high: Option<f64>,
     /// The largest firing strength of a rule, in [0, 1].
     coverage: f64,
-    /// The rule number with that strength, from 1; None if no rule fires.
+    /// The number of the rule with the largest firing strength, from 1; None if no rule fires.
     dominant_rule: Option<usize>,
     /// Whether an input was outside its range and was clamped to its end.
     clamped: bool,
@@ -137,11 +137,11 @@ pub(crate) struct Outcomes {
     value: Py<PyArrayDyn<f64>>,
     /// The lower ends of the intervals of an output that depends on type-2 terms; otherwise the values.
     low: Py<PyArrayDyn<f64>>,
-    /// The upper ends of these intervals.
+    /// The upper ends of the intervals of an output that depends on type-2 terms; otherwise the values.
     high: Py<PyArrayDyn<f64>>,
     /// The largest firing strength of a rule, in [0, 1].
     coverage: Py<PyArrayDyn<f64>>,
-    /// The rule numbers with that strength, from 1; masked if no rule fires.
+    /// The number of the rule with the largest firing strength, from 1; masked if no rule fires.
     dominant_rule: Py<PyAny>,
     /// Whether an input was outside its range and was clamped to its end.
     clamped: Py<PyArrayDyn<bool>>,
@@ -160,7 +160,7 @@ pub(crate) struct Ends {
     pub(crate) high: Vec<f64>,
 }
 
-/// The reasons of values.
+/// The columns of outcomes other than the values.
 pub(crate) struct Reasons {
     /// `None` if no type-2 term affects the output.
     pub(crate) ends: Option<Ends>,
@@ -213,11 +213,11 @@ impl Outcomes {
 pub(crate) struct IntervalOutcome {
     /// The lower end of an interval that contains every value; None if the output has no value.
     low: Option<f64>,
-    /// The upper end of that interval.
+    /// The upper end of an interval that contains every value; None if the output has no value.
     high: Option<f64>,
     /// Whether the output may have no value for some of the inputs, because no rule fires.
     may_be_undefined: bool,
-    /// Whether an interval of an input was partly outside its range and was clamped to it.
+    /// Whether the interval of an input was partly outside the range of the input and was clamped to the range.
     clamped: bool,
 }
 

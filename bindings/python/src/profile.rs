@@ -89,7 +89,7 @@ impl Profile {
         usable(py, name, loaded)
     }
 
-    /// Creates a profile from its text and that of its rule set, as they are pickled.
+    /// Creates a profile from pickled texts: that of the profile and that of its rule set.
     #[staticmethod]
     fn _of_texts(py: Python<'_>, file: &str, profile: String, rules: String) -> PyResult<Self> {
         let [profile, rules] = [profile, rules].map(Source::new);

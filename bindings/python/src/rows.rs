@@ -42,7 +42,7 @@ impl RowArguments<'_> {
     }
 }
 
-/// The reason why the work gave no result.
+/// The reason why no rule set could be learned, tuned or identified.
 pub(crate) enum DerivationError {
     Refused(Vec<String>),
     /// A message, and help.
@@ -109,7 +109,7 @@ pub(crate) fn directed<D: Copy>(
     rising.chain(falling).collect()
 }
 
-/// The claims of `rising` and `falling`.
+/// The monotonicity claims for the inputs in `rising` and `falling`.
 pub(crate) fn claims(rising: &[String], falling: &[String]) -> Vec<Monotone> {
     let directions = [Direction::Increasing, Direction::Decreasing];
     let claims = directed(rising, falling, directions).into_iter();

@@ -85,7 +85,7 @@ fn names(value: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
     })
 }
 
-/// The values for arguments from Python, or the outcomes `with_reasons`.
+/// Evaluates the arguments of a Python call. Returns the values, or the outcomes if `with_reasons`.
 fn answer<'py>(
     rule_set: &Bound<'py, RuleSet>,
     args: &Bound<'py, PyTuple>,
@@ -102,7 +102,7 @@ fn answer<'py>(
     }
 }
 
-/// Evaluates a frame in Python, which returns a frame of the same library.
+/// Evaluates a frame by a function in Python, which returns a frame of the same library.
 fn by_frame<'py>(
     rule_set: &Bound<'py, RuleSet>,
     frame: Bound<'py, PyAny>,
@@ -189,7 +189,7 @@ impl RuleSet {
         self.model(|model| model.outputs.iter().map(name).collect())
     }
 
-    /// The names of the outputs with an interval, because type-2 terms affect them.
+    /// The names of the outputs that depend on type-2 terms and therefore have an interval.
     fn _interval_names(&self) -> Vec<String> {
         let name = |output: &fuzzy::model::Output| output.variable.name.clone();
         self.model(|model| {
@@ -217,7 +217,7 @@ impl RuleSet {
         json.map_err(|error| data_error(error, None))
     }
 
-    /// The same with lists of named entries, whose order does not depend on the sorting of keys.
+    /// The model in JSON, with lists of named entries instead of objects. Sorting the keys does not change their order.
     fn _json_lists(&self) -> PyResult<String> {
         let json = self.model(serde_json::to_string);
         json.map_err(|error| data_error(error, None))
@@ -234,7 +234,7 @@ impl RuleSet {
         Ok(())
     }
 
-    /// The text in a format, as it is saved, and warnings. In the original format, this is the text that was read.
+    /// The text to save in a format, and warnings. In the original format, this is the text that was read.
     #[pyo3(signature = (format, lossy = false))]
     fn _to_text(
         &self,
@@ -327,7 +327,7 @@ impl RuleSet {
         explained_rows(py, compiled, &columns)
     }
 
-    /// Makes another model an equal but independent copy: editing one does not change the other.
+    /// Makes `other` an independent copy of this model: editing one of them does not change the other one.
     fn _share(&self, other: &RuleSet) {
         self.replace(other.source());
     }

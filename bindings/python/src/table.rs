@@ -22,7 +22,7 @@ use crate::{
     outcome::{Columns, NO_RULE},
 };
 
-/// A pickled column: name, metadata, values, and which of them are known, unless all are.
+/// A pickled column: name, metadata, values, and a mask of the known values (None if all are known).
 type Column<'py> = (
     String,
     HashMap<String, String>,
@@ -62,7 +62,7 @@ impl Values<'_> {
     }
 }
 
-/// Columns of numbers. Any library that imports Arrow streams can read it: ``pyarrow.table(t)``, ``polars.DataFrame(t)``;
+/// A table of numbers. Any library that imports Arrow streams can read it: ``pyarrow.table(t)``, ``polars.DataFrame(t)``;
 /// ``pandas.DataFrame(dict(t))`` uses its NumPy columns.
 #[pyclass(frozen, mapping, module = "flagred.types")]
 pub(crate) struct Table {

@@ -54,7 +54,8 @@ pub(crate) fn checked(threads: Option<usize>) -> PyResult<()> {
 
 /// A pool with this number of threads, at most the number of cores, which is also the default.
 ///
-/// A fork copies a pool without its threads, so work would wait for ever. Therefore a child process creates its own pools.
+/// A fork copies a pool without its threads, so work in the copy would never run. Therefore a child process creates its
+/// own pools.
 pub(crate) fn pool(threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
     static POOLS: Mutex<Option<Pools>> = Mutex::new(None);
     checked(threads)?;
@@ -76,7 +77,8 @@ pub(crate) fn pool(threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
     Ok(pool)
 }
 
-/// Runs long work on another thread while this one checks for Ctrl-C. After Ctrl-C, nothing waits for the work.
+/// Runs long work on another thread while this one checks for Ctrl-C. After Ctrl-C, it returns an error without waiting
+/// for the work.
 pub(crate) fn interruptible<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> T + Send + 'static,

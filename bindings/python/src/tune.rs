@@ -199,12 +199,12 @@ fn tune_numbers(
     })
 }
 
-/// Rounds to six digits, because authors read them.
+/// Rounds a loss to six significant digits for display.
 fn rounded(loss: f64) -> f64 {
     format!("{loss:.5e}").parse().unwrap_or(loss)
 }
 
-/// The usable rows as columns, and for each row that is not usable the reason.
+/// The usable rows as columns, and the reason for each row that is not usable.
 fn data(model: &Model, rows: Vec<Row>, loss: Loss) -> (Data, Vec<String>) {
     let mut data = Data {
         inputs: vec![Vec::with_capacity(rows.len()); model.inputs.len()],

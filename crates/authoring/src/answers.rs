@@ -6,8 +6,10 @@ use serde::Serialize;
 
 use crate::Examined;
 
-/// The versions of the layouts; they increase when a name changes its meaning or is removed.
+// The versions of the layouts increase when a name changes its meaning or is removed.
+/// The layout of [`Checked`].
 const CHECK: &str = "flagred.check/1";
+/// The layout of [`Explained`].
 const EXPLAIN: &str = "flagred.explain/1";
 
 /// The findings about a rule set or a profile: `flagred check --json`.
@@ -92,7 +94,7 @@ pub struct Explained<'a> {
     /// The rules that do not fire.
     #[serde(skip_serializing_if = "Option::is_none")]
     silent: Option<Vec<engine::SilentRule>>,
-    /// The nearest changes if one input changes.
+    /// The nearest changes of the result if one input changes and the others do not.
     #[serde(skip_serializing_if = "Option::is_none")]
     changes: Option<Vec<engine::Change>>,
 }

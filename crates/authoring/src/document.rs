@@ -25,7 +25,7 @@ pub struct Document {
     profile: Option<OpenProfile>,
     /// A profile compiled with its rule set, and the findings about both.
     fitted: OnceCell<(Findings, Option<Estimator>)>,
-    /// Computed on demand, because this is most of the work.
+    /// All findings; computed on demand, because that takes most of the time.
     findings: OnceCell<Findings>,
 }
 

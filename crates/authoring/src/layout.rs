@@ -34,11 +34,10 @@ impl fmt::Display for Unformatted {
 }
 
 /// Formats a text: indentation by two spaces, single spaces between words, rules with keywords in capitals. Meaning
-/// and
-/// comments are preserved.
+/// and comments are preserved.
 ///
 /// # Errors
-/// If the text cannot be formatted; the error is the reason.
+/// Returns the reason if the text cannot be formatted.
 pub fn formatted(text: &str) -> Result<String, Unformatted> {
     let before = fuzzy::yaml::read(text).map_err(Unformatted::NotYaml)?;
     if !is_ours(&before) {

@@ -184,7 +184,7 @@ pub(crate) fn check_name(new: &str) -> Result<(), String> {
 /// Returns all positions of the name at an offset in bytes, if it can be renamed to `new`.
 ///
 /// # Errors
-/// If the name cannot be changed; the error is the reason.
+/// Returns the reason if the name cannot be changed.
 pub fn rename(document: &Document, offset: usize, new: &str) -> Result<Vec<Range<usize>>, String> {
     let (rules, _, meaning) = at(document, offset).ok_or("there is no variable or term here")?;
     if rules.names_unread {

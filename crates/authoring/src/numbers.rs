@@ -12,7 +12,7 @@ use fuzzy::{
 
 use crate::Edit;
 
-/// The edits that change the numbers of the rule set in a text to those of another one. `None` if a number that differs
+/// The edits that change the numbers of the rule set in a text to those of `wanted`. `None` if a number that differs
 /// is not in the text. Nothing else is compared, so the meaning of the edited text must be verified.
 pub(crate) fn of_model(text: &str, document: &Document, wanted: &Model) -> Option<Vec<Edit>> {
     let mut edits = Vec::new();
@@ -42,8 +42,8 @@ pub(crate) fn of_model(text: &str, document: &Document, wanted: &Model) -> Optio
     Some(edits)
 }
 
-/// The edits that change the numbers of a variable in a text to those of other terms. `None` if a number that differs
-/// is not in the text.
+/// The edits that change the numbers of a variable in a text to those of `terms`. `None` if a number that differs is not
+/// in the text.
 pub(crate) fn of_terms(
     text: &str,
     variable: &Variable,

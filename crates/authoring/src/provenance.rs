@@ -52,7 +52,7 @@ fn in_place(text: &str, model: &Model) -> Option<String> {
     (read.model == *model).then_some(text)
 }
 
-/// The edit that adds the last step of a rule set to a text with the steps before it.
+/// The edit that adds the last step of a rule set to a text that contains only the earlier steps.
 fn last_step(text: &str, document: &Document, model: &Model) -> Option<Edit> {
     const KEY: &str = "provenance:\n";
     let only = Model {

@@ -117,8 +117,8 @@ fn cell(mapped: &Mapped<'_>, outcome: &Outcome, point: &[f64]) -> Cell {
     }
 }
 
-/// The part of an input's range that is shown: the whole range or, if the terms change only in less than a quarter of
-/// it, a part that is twice as wide as that.
+/// The part of a variable's range that is shown: the whole range, unless the terms change only in less than a quarter of
+/// it. Then it is the part in which they change, with a margin that doubles its width.
 pub fn shown(variable: &Variable) -> Scale {
     let (low, high) = (variable.low, variable.high);
     let (first, last) = fuzzy::map::changing(variable);
@@ -198,7 +198,8 @@ pub fn combinations(lists: &[Vec<f64>]) -> Vec<Vec<f64>> {
     })
 }
 
-/// The difference between the lowest and highest output over the peaks of the axes, as a share of its range.
+/// The difference between the lowest and the highest value of the output over all combinations of the peaks of the axes,
+/// as a share of the output's range.
 fn variation(mapped: &Mapped<'_>, point: &[f64], axes: &[(usize, Vec<f64>)]) -> f64 {
     let lists: Vec<Vec<f64>> = axes.iter().map(|(_, peaks)| peaks.clone()).collect();
     let mut scratch = mapped.engine.scratch();

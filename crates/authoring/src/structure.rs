@@ -53,7 +53,7 @@ pub fn places(document: &Document) -> Option<Places> {
 /// Returns the edits that add an input or output with two terms.
 ///
 /// # Errors
-/// If the part cannot be added; the error is the reason.
+/// Returns the reason if the variable cannot be added.
 pub fn add_variable(
     document: &Document,
     name: &str,
@@ -123,7 +123,7 @@ pub fn add_variable(
 /// Returns the edits that add a term to a variable, in the widest gap between its terms.
 ///
 /// # Errors
-/// If the part cannot be added; the error is the reason.
+/// Returns the reason if the term cannot be added.
 pub fn add_term(document: &Document, variable: usize, name: &str) -> Result<Vec<Edit>, String> {
     let rules = readable(document)?;
     check_name(name)?;
@@ -198,7 +198,7 @@ pub fn add_term(document: &Document, variable: usize, name: &str) -> Result<Vec<
 /// Returns the edits that add a rule after the others.
 ///
 /// # Errors
-/// If the part cannot be added; the error is the reason.
+/// Returns the reason if the rule cannot be added.
 pub fn add_rule(document: &Document, rule: &str) -> Result<Vec<Edit>, String> {
     let rules = readable(document)?;
     fuzzy::rule::parse(rule).map_err(|error| error.message)?;
@@ -239,7 +239,7 @@ pub fn add_rule(document: &Document, rule: &str) -> Result<Vec<Edit>, String> {
 /// Returns the edits that replace the text of a rule. Its confidence, note and comments are kept.
 ///
 /// # Errors
-/// If the rule cannot be changed; the error is the reason.
+/// Returns the reason if the rule cannot be changed.
 pub fn change_rule(document: &Document, rule: usize, to: &str) -> Result<Vec<Edit>, String> {
     let rules = readable(document)?;
     fuzzy::rule::parse(to).map_err(|error| error.message)?;
@@ -260,7 +260,7 @@ pub fn change_rule(document: &Document, rule: usize, to: &str) -> Result<Vec<Edi
 /// Returns the edits that remove a part that no rule uses.
 ///
 /// # Errors
-/// If the part cannot be removed; the error is the reason.
+/// Returns the reason if the part cannot be removed.
 pub fn remove(document: &Document, part: Part) -> Result<Vec<Edit>, String> {
     let rules = readable(document)?;
     let (text, tree) = (document.text(), tree(document)?);

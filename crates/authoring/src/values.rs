@@ -37,9 +37,9 @@ pub struct TermFields {
     pub parameters: String,
     /// The names of the parameters; empty for shapes without a fixed number of them.
     pub names: Vec<&'static str>,
-    /// Whether [`set_parameters`] can change it. An interval type-2 term and the last term of `steps` are edited as text.
+    /// Whether [`set_parameters`] can change the term. An interval type-2 term and the last term of `steps` are edited as text.
     pub is_editable: bool,
-    /// Whether [`set_shape`] can change it.
+    /// Whether [`set_shape`] can change the term.
     pub can_change_shape: bool,
 }
 
@@ -133,7 +133,7 @@ pub fn set_range(
     verified(document, rules, edits, variable)
 }
 
-/// Returns the edits that change the unit of a variable; an empty one is removed.
+/// Returns the edits that change the unit of a variable; an empty `unit` removes it.
 ///
 /// # Errors
 /// The reason why the unit cannot be changed.
@@ -164,8 +164,8 @@ pub fn set_unit(document: &Document, variable: usize, unit: &str) -> Result<Vec<
     verified(document, rules, vec![edit.ok_or(UNREADABLE)?], variable)
 }
 
-/// Returns the edits that change the parameters of a term: numbers separated by commas, or in the notation of the text. In a
-/// partition this is the peak, in `steps` the limit.
+/// Returns the edits that change the parameters of a term, which are given as numbers separated by commas or in the
+/// notation of the text. In a partition, the only parameter is the peak; in `steps`, the limit.
 ///
 /// # Errors
 /// The reason why the parameters cannot be changed.

@@ -210,7 +210,7 @@ fn write_reports(
     Ok(())
 }
 
-/// An unknown risk has its own exit code, so that it is not mistaken for GOOD.
+/// Returns the exit code for a verdict. An unknown risk has its own code, so that it is not mistaken for GOOD.
 pub(crate) fn exit_of(verdict: &Verdict, fail_on: FailOn) -> Exit {
     match (verdict, fail_on) {
         (Verdict::NotAvailable(_), _) => Exit::Unreadable,

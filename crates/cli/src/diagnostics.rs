@@ -18,7 +18,8 @@ use crate::{
     failure::{Failure, cannot_read},
 };
 
-/// Draws findings with their source lines. `colored` text goes through `anstream`, which removes colours that a terminal lacks.
+/// Draws findings with their source lines. Pass `colored` text through `anstream`, which removes colours that a terminal
+/// does not support.
 pub(crate) fn draw(findings: &[Diagnostic], file: &str, text: &str, colored: bool) -> String {
     let style = Style {
         colored,
@@ -147,7 +148,7 @@ fn foreign(bytes: &[u8], shown: &str) -> Option<(&'static str, String)> {
         .then(|| ("not a text file", RULES.to_owned()))
 }
 
-/// In UTF-16, one byte of each ASCII letter is 0.
+/// Returns whether bytes are probably UTF-16 without a byte order mark: one byte of each ASCII letter is 0.
 fn is_utf16_without_mark(bytes: &[u8]) -> bool {
     const LOOKED_AT: usize = 1000;
     let (pairs, _) = bytes.as_chunks::<2>();

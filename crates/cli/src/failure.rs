@@ -102,7 +102,7 @@ impl Failure {
         }
     }
 
-    /// Replaces a general help by a better one.
+    /// Replaces the help by a more specific one if it is `general`.
     pub(crate) fn instead_of(mut self, general: &str, help: impl FnOnce() -> String) -> Self {
         if self.help.as_deref() == Some(general) {
             self.help = Some(help());

@@ -11,7 +11,7 @@ use crate::failure::Failure;
 ///
 /// # Errors
 ///
-/// If the flight cannot be used. The message contains `cannot`, such as `gives no rows`.
+/// If the flight cannot be used. The message consists of the path, `cannot` (such as `gives no rows`) and the reason.
 pub(crate) fn open_complete(
     path: impl AsRef<Path>,
     names: &[&str],

@@ -205,7 +205,8 @@ fn help_of_help(arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
     arguments
 }
 
-/// Returns the options of all commands. `-1` is a value of the option before it, whose parser has the better message.
+/// Returns the definition of the command line. Options accept `-1` as a value, because their parsers report a better
+/// error than clap.
 fn program() -> clap::Command {
     Arguments::command().mut_subcommands(|subcommand| {
         subcommand.mut_args(|argument| {

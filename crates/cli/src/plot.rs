@@ -43,8 +43,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(Exit::Clean)
 }
 
-/// The outputs over the only input; none if there are more inputs. Each point is evaluated once for all outputs, since in a chain an
-/// output reads those before it.
+/// The curves of the outputs over the only input; none if there are more inputs. Each point is evaluated once for all
+/// outputs, because an output may read other outputs.
 fn curves(engine: &Engine) -> Result<Vec<Slice>, Failure> {
     let model = engine.model();
     let [input] = &model.inputs[..] else {

@@ -37,8 +37,8 @@ pub(crate) fn from_source(path: &Path, source: Source) -> Result<Loaded, Failure
     Ok(loaded)
 }
 
-/// Returns the rule set that a profile names, after compiling it. If it is not a rule set, the failure is at the line
-/// of the profile that names it.
+/// Returns the rule set that a profile names, after compiling it. If the file is not a rule set, the failure points to the
+/// line of the profile that names the file.
 pub(crate) fn rule_set(
     profile: &Profile,
     (file, source): (&str, &Source),

@@ -271,7 +271,7 @@ fn clamp(data: &mut Data, variables: &[&Variable]) {
     }
 }
 
-/// Refuses a file that is given twice: its rows would be in training and in test rows.
+/// Refuses a file that is given twice: its rows would be both training and test rows.
 pub(crate) fn distinct(files: &[PathBuf]) -> Result<(), Failure> {
     let mut seen = BTreeSet::new();
     match files.iter().find(|file| !seen.insert(*file)) {
@@ -480,7 +480,8 @@ pub(crate) fn refuse(refused: &[String], rows: usize, purpose: &str) -> Failure 
     ))
 }
 
-/// Returns the problem of a row without its place and its values, except the name of the column.
+/// Returns the kind of a row's problem: the message without position, numbers and quoted texts, but with the name of the
+/// column.
 fn kind(why: &str) -> String {
     let (_, problem) = why.split_once(", line ").unwrap_or(("", why));
     let mut kind = String::new();

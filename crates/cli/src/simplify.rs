@@ -27,7 +27,7 @@ pub(crate) struct Arguments {
     #[arg(value_name = "DATA.csv")]
     data: Vec<PathBuf>,
 
-    /// Largest difference of an output, in its unit [default: 1e-12 of its range]
+    /// Largest accepted difference of an output, in its unit [default: 1e-12 of its range]
     #[arg(long, value_name = "VALUE", value_parser = numbers::at_least_0)]
     tolerance: Option<f64>,
 
@@ -346,7 +346,7 @@ struct Rules {
     before: usize,
     /// The number of rules after.
     after: usize,
-    /// The numbers in the original rule set of the rules that had no effect.
+    /// The rules that had no effect, by their numbers in the original rule set.
     #[schemars(inner(range(min = 1)))]
     dropped: Vec<usize>,
     /// The rules of the simplified rule set.
@@ -357,7 +357,7 @@ struct Rules {
 struct RuleDocument {
     /// The text of the rule.
     rule: String,
-    /// The numbers in the original rule set of the rules that it replaces.
+    /// The rules that this rule replaces, by their numbers in the original rule set.
     #[schemars(inner(range(min = 1)))]
     of: Vec<usize>,
 }

@@ -325,8 +325,8 @@ impl Table {
         }
     }
 
-    /// Refuses a column without any number; `help` is for one that contains words. The only row of a table has a message of its
-    /// own.
+    /// Refuses a column without any number; `help` is added if the column contains words. A table with a single row is
+    /// not refused here, because the message about its bad cell is more specific.
     pub(crate) fn has_numbers(&self, column: usize, help: &str) -> Result<(), Failure> {
         let cell = |row| self.text(row, column);
         let mut cells = (0..self.len()).map(|row| Cell::of(cell(row).as_bytes()));

@@ -129,7 +129,7 @@ fn files() -> tempfile::TempDir {
     ])
 }
 
-/// Asserts that each command line has the exit code and a part of the message.
+/// Asserts the exit code of each command line, and that its output contains the expected text.
 fn assert_advice(folder: &tempfile::TempDir, mistakes: &[(&str, i32, &str)]) {
     let mut wrong = Vec::new();
     for &(typed, code, expected) in mistakes {

@@ -402,7 +402,7 @@ fn other_outputs_are_written_despite_a_full_disk() {
     assert!(folder.path().join("moved.svg").exists());
 }
 
-/// Numbers that the user fixed keep their values, even if a checkpoint has others.
+/// A checkpoint must not change numbers that the user fixed.
 #[test]
 fn a_checkpoint_with_other_fixed_numbers_is_refused() {
     let moved = FAN.replace("{singleton: 8}", "{singleton: 7}");

@@ -16,7 +16,7 @@ use crate::{
     upset::UpsetAlarm,
 };
 
-/// The alarms of a profile over all flights except the kind [`APART`], and over each kind.
+/// The alarms of a profile: over all flights except those of the kind [`APART`], and for each kind.
 pub(crate) struct Alarms {
     /// Alarms in calm stretches, and in flights whose error never exceeds [`ORDINARY_DEG`].
     pub(crate) calm: NeedlessAlarms,
@@ -91,14 +91,14 @@ pub(crate) struct NeedlessAlarms {
     /// The number of flights that contain such times, but have no verdict.
     pub(crate) not_assessed: usize,
     pub(crate) hours: f64,
-    /// The number of these flights with the verdict GOOD, WARN and FAIL.
+    /// Of `flights`, the numbers with the verdict GOOD, WARN and FAIL.
     pub(crate) verdicts: [usize; 3],
     pub(crate) alarms: usize,
     pub(crate) fails: usize,
-    /// Alarms per hour; `None` if there is no flight with a verdict.
+    /// Alarms per hour of these times; `None` if there is no flight with a verdict.
     pub(crate) alarms_per_hour: Option<Figure>,
     pub(crate) fails_per_hour: Option<Figure>,
-    /// The share of the time during which an alarm was on.
+    /// The share of these times during which an alarm was on.
     pub(crate) share_of_time_on: Option<Figure>,
 }
 
@@ -202,7 +202,7 @@ pub(crate) struct Upsets {
     pub(crate) never: usize,
     /// The number of upsets in flights without a verdict.
     pub(crate) not_assessed: usize,
-    /// The median time from an alarm to its upset, in seconds.
+    /// The median time from the start of an alarm to the upset that follows, in seconds.
     pub(crate) lead_s_median: Option<f64>,
 }
 
@@ -234,7 +234,7 @@ impl Upsets {
         found
     }
 
-    /// The number of upsets that were assessed.
+    /// The number of upsets in flights with a verdict.
     pub(crate) fn assessed(&self) -> usize {
         self.before + self.within_1_s + self.never
     }
@@ -245,7 +245,7 @@ impl Upsets {
 pub(crate) struct Verdicts {
     pub(crate) flights: usize,
     pub(crate) hours: f64,
-    /// For each profile, the number of GOOD, WARN, FAIL, NA.
+    /// For each profile, the numbers of the verdicts GOOD, WARN, FAIL and NA.
     pub(crate) counts: Vec<[usize; 4]>,
 }
 

@@ -160,11 +160,11 @@ impl Baseline {
 #[derive(Debug, Clone)]
 pub struct BaselineObserver<'a> {
     baselines: &'a [Baseline],
-    /// The sources of the baselines without [`PerMotor`] whose signal is available, in their order.
+    /// Computes the baselines without [`PerMotor`] whose signals are available, in the order of `baselines`.
     pooled: Observer,
-    /// For each motor, the sources of the baselines with [`PerMotor`], in their order.
+    /// For each motor: computes the statistics of the baselines with [`PerMotor`], in the order of `baselines`.
     motors: Vec<Observer>,
-    /// The index of each baseline in `pooled` or in each of `motors`; `None` if its signal is not available.
+    /// The index of each baseline in `pooled`, or in each observer of `motors`; `None` if its signal is not available.
     places: Vec<Option<usize>>,
 }
 

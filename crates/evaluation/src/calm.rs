@@ -78,8 +78,8 @@ pub fn calm_stretches(errors: &ErrorRecord, attitudes: &[(f64, Attitude)], air: 
 mod tests {
     use super::*;
 
-    /// The calm stretches of a flight of two minutes at 25 Hz that has an error, a steep tilt and no attitude in the
-    /// given times.
+    /// The calm stretches of a flight of two minutes at 25 Hz. In the given periods, it has an error, a steep tilt or
+    /// an unknown attitude.
     fn calm(error: (f64, f64), tilt: (f64, f64), none: (f64, f64)) -> Vec<[f64; 2]> {
         let is_in = |t_s: f64, (from_s, to_s): (f64, f64)| (from_s..to_s).contains(&t_s);
         let attitudes: Vec<(f64, Attitude)> = (0..=3000)

@@ -32,7 +32,7 @@ impl Estimators {
         self.profiles.iter().any(|profile| profile.name == name)
     }
 
-    /// Adds a profile, named by its own name, or by `otherwise` if another profile has the same name.
+    /// Adds a profile under its own name, or under the name `otherwise` if another profile has the same name.
     pub fn add(&mut self, otherwise: &str, estimator: Estimator) {
         let own = &estimator.profile().name;
         let name = match self.has(own) {

@@ -11,7 +11,7 @@ use flagred_flightlog::ReadError;
 pub struct Candidate {
     /// The path of the file.
     pub path: PathBuf,
-    /// Whether the user named the file itself. If it was found in a folder, it may be something else than a flight.
+    /// Whether the user named the file itself. If it was found in a folder, it may be something other than a flight.
     pub is_named: bool,
 }
 

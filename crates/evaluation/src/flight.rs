@@ -23,8 +23,8 @@ use crate::{
 /// The distance between steps, in seconds.
 const STEP_S: f64 = 0.5;
 
-/// Steps begin this time after take-off, in seconds, unless the log defines the judged time. The shortest window is
-/// then full.
+/// Steps begin this time after take-off, in seconds, unless the log defines the judged time. By then the shortest
+/// window is full.
 const FIRST_STEP_S: f64 = 2.0;
 
 /// A step is quiet if there was no critical error in this time before it, in seconds.
@@ -84,7 +84,7 @@ pub(crate) struct ProfileResult {
     /// raised to FAIL counts as one period.
     pub(crate) alarms: Vec<Span>,
     pub(crate) fails: Vec<Span>,
-    /// The periods at which a level was on, matched with the episodes.
+    /// The periods during which a level was on, matched with the episodes.
     pub(crate) matches: WarningMatches,
 }
 
@@ -276,8 +276,8 @@ struct ProfileState {
     is_warning: bool,
 }
 
-/// Passes the samples of a flight to all estimators and stores in each step the scores after the latest sample before
-/// it. Returns the results of each profile, with the periods at which a level was on.
+/// Passes the samples of a flight to all estimators, and stores in each step the scores after the last sample before
+/// the step. Returns the results of each profile.
 fn follow(
     flight: &Flight,
     estimators: &Estimators,

@@ -281,7 +281,7 @@ pub struct MethodErrors {
     pub by_rule_mean_absolute: f64,
 }
 
-/// Removes each rule in turn, fills its gap with each method, and compares the filled values with the rows there.
+/// Removes each rule in turn, fills its gap with each method, and compares the filled values with the rows in the gap.
 ///
 /// Rows belong to the rule that fires most strongly on them. Rows that other rules also cover, or that no rule covers,
 /// are ignored.
@@ -387,7 +387,7 @@ pub fn leave_one_rule_out(
 mod tests {
     use super::*;
 
-    /// The risk falls linearly with the margin and does not depend on the spread.
+    /// Rows whose risk falls linearly with the margin and does not depend on the spread.
     fn rows(groups: Option<u32>) -> Vec<Row> {
         (0..400)
             .map(|i| {

@@ -169,9 +169,9 @@ impl Ranking {
         })
     }
 
-    /// The mean area under the receiver operating characteristic within groups, over the groups that have both critical
-    /// and other predictions. It measures whether scores predict the time, and not only the group. `None` if no group
-    /// has both.
+    /// The mean area under the receiver operating characteristic within groups, over the groups that have both
+    /// critical and other predictions. It measures whether scores predict when a case is critical, and not only in
+    /// which group. `None` if no group has both.
     ///
     /// # Example: the score distinguishes two flights, but not the moments within them
     /// ```
@@ -225,7 +225,7 @@ impl Ranking {
         })
     }
 
-    /// The areas if every prediction is counted as often as its group.
+    /// The areas if each prediction counts as many times as `weights` specifies for its group.
     fn weighted_areas(&self, weights: &[u32]) -> Option<Areas> {
         let (mut critical, mut others) = (0_u64, 0_u64);
         let (mut critical_of_tie, mut others_of_tie) = (0_u64, 0_u64);
@@ -296,7 +296,7 @@ pub struct Band {
     pub predictions: u64,
     /// The number of these predictions that were critical.
     pub critical: u64,
-    /// The mean of their risks in %; `None` without predictions.
+    /// The mean risk of these predictions in %; `None` without predictions.
     pub mean_risk_pct: Option<f64>,
 }
 

@@ -1,5 +1,5 @@
-//! Computes inputs of profiles from a table with one row for each flight, from means and standard deviations of the
-//! commands.
+//! Computes inputs of profiles from the means and standard deviations of the commands in a table with one row for each
+//! flight.
 //!
 //! Such tables contain statistics of the normalised command c on the full range. Moments of a command convert exactly
 //! to the effective range, `e = (c - low) / (high - low)`. By the law of total variance, the variance over all motors
@@ -68,7 +68,8 @@ pub fn recipe(source: &Source) -> Option<Recipe> {
     Some(Recipe { columns, make })
 }
 
-/// A mean margin on the effective range; exact if all commands are on the same side of the middle of both ranges.
+/// Converts a mean margin to the effective range. The result is exact if all commands are on the same side of the
+/// middle of both ranges.
 fn effective_margin(values: &[f64], low: f64, high: f64) -> f64 {
     let nearer = if values[1] < 0.5 {
         values[0] - low

@@ -70,7 +70,7 @@ impl Column {
 /// Converts the rows of a table to cases, each a separate flight unless a column `file` groups them; also returns notes
 /// for the user.
 ///
-/// A row is critical if its attitude error (`att_rmse_deg`) is 5 degrees or more, or if it crashed.
+/// A row is critical if its attitude error (`att_rmse_deg`) is 5 degrees or more, or if the flight ended in a crash.
 ///
 /// # Errors
 /// If a cell does not contain the required number.

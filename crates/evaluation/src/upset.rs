@@ -13,17 +13,17 @@ const TILT_DEG: f64 = 60.0;
 /// A tilt counts as commanded if the set point tilts by at least this, in degrees.
 const COMMANDED_TILT_DEG: f64 = 50.0;
 
-/// The time around an intentional flip that is ignored, in seconds. A flip is a set point that tilts by more than
-/// [`TILT_DEG`].
+/// The time before and after an intentional flip that is ignored, in seconds. The vehicle flips intentionally while
+/// its set point tilts by more than [`TILT_DEG`].
 const FLIP_S: f64 = 2.0;
 
-/// An alarm counts as before an upset if it was on within this time before it, in seconds.
+/// An alarm precedes an upset if it was on at any time within this many seconds before the upset.
 const BEFORE_S: f64 = 10.0;
 
-/// An alarm counts as just after an upset if it was raised within this time after it, in seconds.
+/// An alarm follows an upset if it was raised within this many seconds after the upset.
 const AFTER_S: f64 = 1.0;
 
-/// How an upset was found by alarms.
+/// Whether an alarm was raised before an upset, just after it, or not at all.
 ///
 /// # Example: an alarm that is on four seconds before the upset
 /// ```

@@ -16,8 +16,8 @@ const ROUNDING_S: f64 = 1e-6;
 pub struct EpisodeMatch {
     /// The episode.
     pub episode: Span,
-    /// The start of the warning that was on at the start of the episode, otherwise of the first one during it, in
-    /// seconds; `None` without either.
+    /// The start, in seconds, of the warning that was on when the episode began, or else of the first warning that
+    /// began during the episode. `None` if there is neither.
     pub warned_s: Option<f64>,
 }
 

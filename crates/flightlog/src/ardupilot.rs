@@ -25,9 +25,10 @@ fn motor_of_function(function: i64) -> Option<u16> {
     u16::try_from(number).ok()
 }
 
-/// The motors of a vehicle in order of their numbers, each with the number of its output, from 1. They are named by
-/// SERVOn_FUNCTION. If the log has none (firmware before 3.5), they are the outputs 1 to N with N from the frame.
-/// `name` is the name of an output in the log.
+/// The motors of a vehicle in order of their numbers, each with the number of its output, from 1. The outputs are
+/// those that SERVOn_FUNCTION assigns to motors. If the log has no such parameter (firmware before 3.5), each motor is
+/// on the output with the same number, and the frame determines the number of motors. `name` returns the name of an
+/// output in the log.
 pub(crate) fn motors(
     parameters: &Parameters,
     vehicle: &Vehicle,
@@ -131,7 +132,7 @@ pub(crate) fn air_from_commands(
     )
 }
 
-/// A flight mode in the form of the log.
+/// A flight mode as the log records it: by number or by name.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Mode {
     Number(i64),
@@ -228,9 +229,9 @@ pub(crate) fn has_limits(parameters: &Parameters) -> bool {
     is_known("MOT_SPIN_MIN") && is_known("MOT_SPIN_MAX") || is_known("THR_MIN")
 }
 
-/// The part of the range that is used in flight: MOT_SPIN_MIN to MOT_SPIN_MAX. Before firmware 3.4 it begins at THR_MIN
-/// per mille. In firmware 3.3 it ends at the share MOT_THST_MAX of the rest; in 3.1 and 3.2 at MOT_TCRV_MAXPCT percent
-/// of the whole range, if that curve is in use.
+/// The part of the range that is used in flight: MOT_SPIN_MIN to MOT_SPIN_MAX. Before firmware 3.4, the lower limit is
+/// `low = THR_MIN / 1000`. The upper limit is `low + MOT_THST_MAX (1 - low)` in firmware 3.3, and MOT_TCRV_MAXPCT
+/// percent of the whole range in 3.1 and 3.2 if the thrust curve is enabled.
 pub(crate) fn effective_range(parameters: &Parameters) -> Range {
     let range = |low, high, source: String| Range {
         low,
@@ -265,12 +266,12 @@ pub(crate) fn effective_range(parameters: &Parameters) -> Range {
     }
 }
 
-/// An upper limit is in force if at most the first number, a share of the commands, exceed it by more than the second
-/// number, a fraction of the range. Single damaged samples are thus ignored.
+/// `(share, excess)`: an upper limit is in force if at most this share of the commands exceeds it by more than
+/// `excess`, a fraction of the range. A few damaged samples are thus ignored.
 const ABOVE: (f64, f64) = (1e-4, 0.006);
 
-/// The effective range of a flight. Before firmware 3.4 a limit may be set without being in force; the commands then
-/// exceed it.
+/// The effective range of a flight. Before firmware 3.4, an upper limit may be set but have no effect: it is ignored
+/// if the commands exceed it.
 pub(crate) fn range_in_force(parameters: &Parameters, flight: &Flight) -> Range {
     let effective = effective_range(parameters);
     let is_new = parameters.pair("MOT_SPIN_MIN", "MOT_SPIN_MAX").is_some();

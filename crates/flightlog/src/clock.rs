@@ -1,6 +1,6 @@
 //! The clock of a log: decides which timestamps to accept, and detects reboots of the autopilot.
 
-/// The largest step back from one message to the next that is always accepted, in seconds. It is larger than
+/// The largest step back from one message to the next that is always accepted, in seconds. It is longer than
 /// [`FORWARD_S`], because the previous message may be the damaged one.
 const BACK_S: f64 = -2.5;
 /// The largest step forward from one message to the next that is always accepted, in seconds.
@@ -162,7 +162,8 @@ pub(crate) fn seconds_of(micros: u32, last_s: Option<f64>) -> f64 {
     t_s + rounds * ROUND_S
 }
 
-/// The latest time of a log whose messages may be late, but not far ahead of all others, in seconds.
+/// The latest time, in seconds, of a log whose messages may arrive late. A message that is far ahead of all others is
+/// damaged.
 #[derive(Debug)]
 pub(crate) struct Latest {
     latest_s: Option<f64>,
@@ -198,7 +199,7 @@ impl Latest {
     }
 }
 
-/// Whether a log may continue at this time after a pause.
+/// Whether a log may continue at this time after a pause: neither the time nor the pause is impossibly large.
 fn is_possible(last_s: Option<f64>, t_s: f64) -> bool {
     t_s < LATEST_S && last_s.is_none_or(|last_s| t_s - last_s < LONGEST_PAUSE_S)
 }

@@ -21,7 +21,8 @@ pub enum ReadError {
     /// The file could not be opened, or reading it failed.
     #[error("`{path}` cannot be read: {source}")]
     Io {
-        /// The path of the file, as given by the user; `standard input`, or `the log` for a reader.
+        /// The path of the file, as given by the user; `standard input`, or `the log` if the log was not read from a
+        /// file.
         path: String,
         /// The error of the operating system.
         source: std::io::Error,

@@ -144,7 +144,7 @@ pub struct Range {
     pub low: f64,
     /// The upper end, above `low`.
     pub high: f64,
-    /// The unit of both: `us`, `1` (a fraction) or `raw` (counts of a bus).
+    /// The unit of both ends: `us`, `1` (a fraction) or `raw` (counts of a bus).
     pub unit: &'static str,
     /// The source of the range, such as `MOT_PWM_MIN/MAX`.
     pub source: String,
@@ -225,7 +225,7 @@ impl Commands {
     }
 }
 
-/// A message, or a change of the flight mode, at a time.
+/// A message, or a change of the flight mode, with its time.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -255,10 +255,10 @@ impl<T> Event<T> {
 
 /// A flight, read from a log.
 ///
-/// Times are in seconds on the log's own clock and never decrease within a series. The clock counts from boot for
-/// ArduPilot and PX4 logs and for telemetry (from the first packet if motor commands carry no time); in CSV files it is
-/// as written. If a log contains several boots of the autopilot, the clock continues from the end of the previous boot;
-/// [`Flight::boots_s`] contains the start of each.
+/// Times are in seconds on the log's own clock and never decrease within a series. The clock of ArduPilot and PX4 logs
+/// and of telemetry counts from boot (that of telemetry from the first packet if motor commands contain no time); a
+/// CSV file contains its own times. If a log contains several boots of the autopilot, the clock continues from the end
+/// of the previous boot; [`Flight::boots_s`] contains the start of each boot except the first.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -274,8 +274,8 @@ pub struct Flight {
     pub geometry: Option<Geometry>,
     /// The range of the raw commands, 0 % to 100 %; `None` if the log does not record it.
     pub range: Option<Range>,
-    /// The part of the range that is used in flight, as fractions of it. A motor at its upper end is saturated even
-    /// though the range extends further.
+    /// The part of the range that is used in flight, as fractions of the range. A motor at the upper end of this part
+    /// is saturated, even though the range extends further.
     pub effective_range: Range,
     /// The reason why the whole range is used although the log contains limits.
     pub effective_range_doubt: Option<String>,
@@ -389,7 +389,7 @@ impl Flight {
             .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
     }
 
-    /// The rate of rows of motor commands in Hz, without pauses; `None` with fewer than two rows.
+    /// The rate of rows of motor commands in Hz, ignoring pauses; `None` with fewer than two rows.
     pub fn command_rate_hz(&self) -> Option<f64> {
         crate::signal::rate_hz(self.commands.t_s())
     }

@@ -6,7 +6,7 @@ use crate::{Flight, Format, VehicleKind};
 /// The rate of motor commands in Hz below which their spread over a window is not meaningful.
 const SLOWEST_HZ: f64 = 5.0;
 
-/// The number of motors of a tricopter.
+/// The minimum number of motors of a multirotor: a tricopter has three.
 const LEAST_MOTORS: usize = 3;
 
 /// Whether motor outputs are logged, as RCOU or, before ArduCopter 3.2, as MOT.
@@ -46,13 +46,13 @@ pub enum Gap {
     MotorsMissing {
         /// The number of motors whose outputs are known.
         found: usize,
-        /// The number of motors that the vehicle has, by its frame and the numbers of the known ones.
+        /// The number of motors that the vehicle has, according to its frame and the numbers of the known motors.
         expected: usize,
     },
     /// Fewer motors are known than the smallest multirotor has.
     #[error("the log has {found} motor{}, but a multirotor has at least {LEAST_MOTORS}", if *found == 1 { "" } else { "s" })]
     TooFewMotors {
-        /// Motors whose outputs are known.
+        /// The number of motors whose outputs are known.
         found: usize,
     },
     /// Motors are known, but their commands were not logged.
@@ -201,8 +201,8 @@ impl Gap {
 }
 
 impl Flight {
-    /// All information that is missing from this log, most important first; empty for a complete log. For a vehicle
-    /// that is not a multirotor, this is the only gap.
+    /// All information that is missing from this log, most important first; empty for a complete log. A vehicle that
+    /// is not a multirotor has only the gap [`Gap::NotAMultirotor`].
     ///
     /// ```
     /// let log = "t_s,motor1,motor2,motor3\n0,0.5,0.5,0.5\n1,0.4,0.4,0.4\n2,0.4,0.4,0.4\n";

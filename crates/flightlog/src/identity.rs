@@ -3,7 +3,7 @@
 use crate::Vehicle;
 use crate::parameters::Parameters;
 
-/// Parameters with the MAVLink system id: ArduPilot up to 4.6, ArduPilot later, PX4.
+/// The parameters that contain the MAVLink system id: in ArduPilot up to 4.6, in later ArduPilot, and in PX4.
 const SYSTEM_ID: [&str; 3] = ["SYSID_THISMAV", "MAV_SYSID", "MAV_SYS_ID"];
 
 /// Adds the identity from parameters. A serial number that a person entered is used only if the board reports none.
@@ -29,8 +29,8 @@ pub(crate) fn name(vehicle: &mut Vehicle, id: String, source: &str) {
     vehicle.id_source = Some(source.to_owned());
 }
 
-/// The id in AUTOPILOT_VERSION and its field: `uid2` in the form that PX4 writes into its logs as `sys_uuid`, otherwise
-/// `uid`. Zeros mean unknown.
+/// The id in AUTOPILOT_VERSION and the name of its field: `uid2`, in the form in which PX4 logs it as `sys_uuid`, or
+/// else `uid`. An id of zeros counts as unknown.
 pub(crate) fn of_version(uid: &[u8], uid2: &[u8]) -> Option<(String, &'static str)> {
     let hexadecimal = |bytes: &mut dyn Iterator<Item = &u8>| -> String {
         bytes.map(|byte| format!("{byte:02x}")).collect()

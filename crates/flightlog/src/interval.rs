@@ -109,8 +109,8 @@ impl Intervals {
         Self::from_changes(&within, before, first_s, last_s, rule)
     }
 
-    /// Intervals from changes of a state: each change applies from its time on. `before` is the state from `first_s` to
-    /// the first change.
+    /// Intervals from changes of a state. Each change applies until the next one; `before` is the state from `first_s`
+    /// to the first change.
     pub(crate) fn from_changes(
         changes: &[(f64, bool)],
         before: bool,
@@ -159,8 +159,8 @@ impl Intervals {
     }
 }
 
-/// Combines the changes of two states into the changes of a state that is true while both are. The first value of each
-/// also applies to the time before it.
+/// Combines the changes of two states into the changes of a state that is true while both states are true. The first
+/// value of each state also applies to the time before it.
 pub(crate) fn both_hold(a: &[(f64, bool)], b: &[(f64, bool)]) -> Vec<(f64, bool)> {
     let mut times: Vec<f64> = a.iter().chain(b).map(|(t_s, _)| *t_s).collect();
     times.sort_by(f64::total_cmp);

@@ -15,7 +15,7 @@ const AS_CSV: &str = "save it as CSV (UTF-8)";
 const AS_TEXT: &str = "save it as text, a table as CSV (UTF-8)";
 const COMMAS: &str = "a flight CSV separates cells by commas, and numbers have a decimal point";
 
-/// Signatures: the first bytes of a file, bytes that must follow somewhere, name, and help.
+/// Signatures: the first bytes of a file, bytes that must occur after them, name, and help.
 const SIGNATURES: &[(&[u8], &[u8], &str, &str)] = &[
     (b"\x89PNG", b"", "a PNG picture", ""),
     (b"\xff\xd8\xff", b"", "a JPEG picture", ""),

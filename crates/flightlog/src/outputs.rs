@@ -47,8 +47,8 @@ const TOGETHER: f64 = 0.6;
 #[derive(Debug, Default)]
 pub(crate) struct Outputs {
     t_s: Vec<f64>,
-    /// One column for each output, at the index of its number minus 1. A column is shorter than `t_s` if the last rows
-    /// do not contain the output, and empty if all its values were 0.
+    /// One column for each output, at the index `number - 1`. A column is shorter than `t_s` if the last rows do not
+    /// contain the output, and empty if all its values were 0.
     columns: Vec<Vec<u16>>,
     set_back: BackstepDetector,
 }

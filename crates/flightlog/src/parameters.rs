@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-/// Parameters by name. For a log, the first value of each is kept, because failure tests and learning change parameters
-/// in flight.
+/// Parameters by name. For a log, the first value of each is kept, because failure tests and automatic tuning change
+/// parameters in flight.
 #[derive(Debug, Default)]
 pub(crate) struct Parameters {
     values: BTreeMap<String, f64>,
@@ -83,7 +83,7 @@ impl<'a> FromIterator<(&'a str, f64)> for Parameters {
 pub struct Parameter {
     /// The name of the parameter.
     pub name: String,
-    /// The first value, because failure tests and learning change parameters in flight.
+    /// The first value, because failure tests and automatic tuning change parameters in flight.
     pub value: f64,
     /// The message that contains the parameter, such as `PARM` or `PARAM_VALUE`.
     pub source: String,

@@ -39,7 +39,7 @@ impl PulseRangeError {
 
 /// The source of a range that the user gave.
 const GIVEN: &str = "given by the user";
-/// The share of commands that may contradict the given range, because they are damaged.
+/// The largest share of commands that may contradict the given range; these commands count as damaged.
 const DAMAGED: f64 = 1e-4;
 /// A command contradicts the given range only if it exceeds the range by more than this, in us.
 const ROUNDING_US: f64 = 5.0;

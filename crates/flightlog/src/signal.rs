@@ -132,7 +132,7 @@ impl<'a> Signal<'a> {
         }
     }
 
-    /// The sample rate in Hz, without pauses; `None` with fewer than two samples.
+    /// The sample rate in Hz, ignoring pauses; `None` with fewer than two samples.
     pub fn rate_hz(&self) -> Option<f64> {
         rate_hz(self.t_s)
     }
@@ -197,11 +197,11 @@ impl Order {
 /// A clock that goes back by more than this, in seconds, and stays behind for at least two rows, was set back or
 /// restarted.
 pub(crate) const SET_BACK_S: f64 = 0.2;
-/// The maximum number of entries in [`SetBack::at_s`].
+/// The maximum number of entries in [`BackstepDetector::at_s`].
 const MOST_SET_BACK: usize = 1000;
 
-/// Detects a clock that is set back. The rows that are dropped because of it leave no gap in the times of the other
-/// rows.
+/// Detects a clock that is set back. The kept rows do not show it, because the dropped rows leave no gap in their
+/// times.
 #[derive(Debug, Default)]
 pub(crate) struct BackstepDetector {
     /// The time of the previous row, if it was dropped.
@@ -237,7 +237,7 @@ impl BackstepDetector {
     }
 }
 
-/// The sample rate in Hz: the inverse of the mean time step, without pauses. A step is a pause if it is over 2 s and
+/// The sample rate in Hz: the inverse of the mean time step, ignoring pauses. A step is a pause if it is over 2 s and
 /// over ten times the median step. `None` without any step.
 pub(crate) fn rate_hz(t_s: &[f64]) -> Option<f64> {
     let steps = || {

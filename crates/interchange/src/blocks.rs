@@ -1,5 +1,5 @@
-//! Rule blocks, and settings of single outputs. In a rule set, such a setting applies to all blocks or outputs, or each
-//! has its own.
+//! Settings of rule blocks and of single outputs. In a rule set, a setting applies to all blocks or outputs, or each
+//! block or output has its own.
 
 use fuzzy::model::{Activation, Aggregation, Block, Model, Operators, Rule};
 
@@ -33,8 +33,8 @@ pub(crate) fn settle(model: &mut Model, mut blocks: Vec<Block>) {
     model.blocks = blocks;
 }
 
-/// Sets the aggregation of each output: that of the first output becomes the default of the rule set, different ones
-/// are stored with their outputs.
+/// Sets the aggregation of each output. That of the first output becomes the default of the rule set; an aggregation
+/// that differs from it is stored with its output.
 pub(crate) fn aggregate(model: &mut Model, found: &[Option<Aggregation>]) {
     let common = found.iter().flatten().next().copied().unwrap_or_default();
     model.operators.aggregation = common;

@@ -5,7 +5,7 @@ use fuzzy::{
     rule::{Condition, Hedge},
 };
 
-/// The disjunction for which De Morgan's law holds.
+/// The disjunction that is related to a conjunction by De Morgan's law.
 pub(crate) fn dual(and: Conjunction) -> Disjunction {
     match and {
         Conjunction::Minimum => Disjunction::Maximum,

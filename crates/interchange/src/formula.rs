@@ -42,7 +42,7 @@ pub(crate) fn quoted(name: &str) -> String {
     }
 }
 
-/// Splits a formula into names, numbers and signs.
+/// Splits a formula into names, numbers and symbols.
 pub(crate) fn words(text: &str) -> Vec<&str> {
     let mut words = vec![];
     let mut rest = text.trim_start();
@@ -59,8 +59,8 @@ pub(crate) fn words(text: &str) -> Vec<&str> {
     words
 }
 
-/// Writes a formula that [`read`] and fuzzylite can parse. fuzzylite has no signs before operands, and comparisons only
-/// as functions. `own` is written as `x`.
+/// Writes a formula that [`read`] and fuzzylite can parse. fuzzylite supports no signs before operands, and supports
+/// comparisons only as functions. `own` is written as `x`.
 pub(crate) fn write(formula: &Formula, own: Option<&str>) -> String {
     let number = |value: f64| {
         FormulaText::whole(match value < 0.0 {

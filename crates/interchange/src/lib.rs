@@ -1,8 +1,8 @@
 //! Reads and writes rule sets of other programs: FIS (MATLAB, Octave), FLL (fuzzylite), FCL (IEC 61131-7, jFuzzyLogic
 //! and fuzzylite) and FML (IEEE 1855).
 //!
-//! It converts text to a [`fuzzy::Model`], and the reverse, and opens no file. Content that the model cannot represent
-//! is an error, or a warning if losses are accepted.
+//! It converts text to a [`fuzzy::Model`] and a model to text, and does not open files. Content that the model or the
+//! format cannot represent is an error, or a warning if losses are accepted.
 //!
 //! ```
 //! use flagred_interchange::{Format, Losses};

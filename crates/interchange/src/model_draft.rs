@@ -144,7 +144,8 @@ impl<'t> ModelDraft<'t> {
         self.error("unknown-word", part, message, &help);
     }
 
-    /// The ends of a range. For an output with computed values, which needs no range, `0 0` becomes a range around it.
+    /// The ends of a range. An empty range, such as `0 0`, becomes a range of width 1 around it if the output has
+    /// computed values, because these do not depend on the range.
     pub(crate) fn range(
         &mut self,
         part: &str,

@@ -128,8 +128,8 @@ fn fuzzylite(file: &str, points: &str) -> Vec<(String, PathBuf, PathBuf)> {
     folders.map(of).collect()
 }
 
-/// fuzzylite's C++ library ignores strengths up to 1e-6. Without a default value, its mean of maxima is the middle of
-/// the range where no rule fires; here, and in pyfuzzylite 8, there is no value.
+/// Adapts a model to fuzzylite's C++ library, which ignores strengths up to 1e-6. If no rule fires and there is no
+/// default value, its mean of maxima is the middle of the range; here, and in pyfuzzylite 8, there is no value.
 fn as_fuzzylite_in_cpp(_: &str, model: &mut Model) {
     model.least_strength = 1e-6;
     for output in &mut model.outputs {

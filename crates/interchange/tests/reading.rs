@@ -294,8 +294,8 @@ fn unsupported_features_are_warnings_where_losses_are_accepted() {
     assert_eq!(document.warnings.0[0].code, "not-enabled");
 }
 
-/// An FCL text with an output of formulas and two rules with the same conclusion; `accu` is before its end and `end`
-/// after its last rule.
+/// An FCL text with an output whose values are computed, and two rules with the same conclusion. `accu` is inserted at
+/// the end of the output, `end` after the last rule.
 fn twice(accu: &str, end: &str) -> String {
     format!(
         "FUNCTION_BLOCK twice\nVAR_INPUT\n  x : REAL;\nEND_VAR\nVAR_OUTPUT\n  y : REAL;\nEND_VAR\n\

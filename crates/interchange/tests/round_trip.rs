@@ -169,7 +169,7 @@ fn steps_are_exported_as_rectangles_and_read_back_as_steps() {
     }
 }
 
-/// A rule set of one rule for each term of the output.
+/// A rule set with an output that has two terms, `a` and `b`, and one rule for each.
 fn with_output(name: &str, output: &str) -> Model {
     let text = format!(
         "fuzzy: 1\nname: {name}\ninputs: {{x: {{range: [0, 1], partition: [low, high]}}}}\n\

@@ -174,8 +174,8 @@ fn of_steps(
     path(points, stretch, gap_s, decimals)
 }
 
-/// The longest time without a sample across which a curve is drawn, in seconds: five samples, at least the profile's
-/// longest gap.
+/// The longest time without a sample that a curve bridges, in seconds: five sample intervals, but at least the longest gap
+/// that the profile allows.
 pub(crate) fn gap_s(estimator: &Estimator, rate_hz: Option<f64>) -> f64 {
     let longest_gap_s = estimator.profile().sampling.longest_gap_s;
     rate_hz.map_or(longest_gap_s, |rate_hz| longest_gap_s.max(5.0 / rate_hz))

@@ -5,7 +5,7 @@
 pub(crate) enum Clock {
     /// `86.5 s`, on the clock of the log.
     Log,
-    /// `1:02.3 min`, since this time.
+    /// `1:02.3 min`, counted from this time in seconds on the clock of the log.
     Since(f64),
 }
 

@@ -139,7 +139,7 @@ pub(super) fn map(estimator: &Estimator, model: &Model, steps: &[Step]) -> Optio
     })
 }
 
-/// The appearance of a cell: the twentieth of the range of risk, and whether the risk is interpolated.
+/// The appearance of a cell: the twentieth of the risk's range that contains its risk, and whether the risk is interpolated.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Look {
     twentieth: u32,

@@ -20,7 +20,7 @@ const MOST_DRAWN: usize = 100;
 pub struct Style {
     /// Whether to use the colours of a terminal.
     pub colored: bool,
-    /// Advice of the calling program for findings with this code.
+    /// Returns the calling program's advice for findings with a code, if there is any.
     pub advice: fn(&str) -> Option<&'static str>,
     /// Where to find all findings, if there are too many to display.
     pub all: &'static str,
@@ -69,7 +69,8 @@ pub fn draw(findings: &[Diagnostic], file: &str, text: &str, style: Style) -> St
     drawn
 }
 
-/// A finding with its location in the text as displayed, which may be the same text.
+/// A finding with its locations in the displayed text; `is_same` if that equals `text`. Hidden characters in its messages
+/// are made visible.
 fn shown(finding: &Diagnostic, text: &str, is_same: bool) -> Diagnostic {
     let at = |offset: usize| match text.get(..offset) {
         Some(before) if !is_same => visible_lines(before).len(),

@@ -156,7 +156,7 @@ impl<'a> Teller<'a> {
     }
 }
 
-/// The finding in which another risk than the profile's own was highest; `None` if it has no findings.
+/// The finding with the highest value of `output`, a risk other than the profile's own; `None` if no finding is about it.
 pub(crate) fn highest_of<'f>(output: &str, findings: &'f [Finding]) -> Option<&'f Finding> {
     let of_risk = findings
         .iter()
@@ -164,7 +164,7 @@ pub(crate) fn highest_of<'f>(output: &str, findings: &'f [Finding]) -> Option<&'
     of_risk.max_by(|a, b| a.value_pct.total_cmp(&b.value_pct))
 }
 
-/// The advice of a finding, and where the motors are that it names.
+/// The advice of a finding, and the positions of the motors that it names.
 pub(crate) fn advice(teller: Teller<'_>, finding: &Finding, flight: &Flight) -> String {
     let advice = teller.words(finding).advice;
     match positions(finding, flight) {
@@ -173,7 +173,8 @@ pub(crate) fn advice(teller: Teller<'_>, finding: &Finding, flight: &Flight) -> 
     }
 }
 
-/// Where the motors are that a finding names: `Motor 3 is at the front left.` `None` without motors or a known geometry.
+/// The positions of the motors that a finding names: `Motor 3 is at the front left.` `None` if it names no motor or the
+/// geometry is unknown.
 fn positions(finding: &Finding, flight: &Flight) -> Option<String> {
     let (named, geometry) = (finding.motor?, flight.geometry.as_ref()?);
     let places = [Some(named.number), named.or_number].into_iter().flatten();

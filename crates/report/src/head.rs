@@ -69,7 +69,7 @@ pub(crate) fn share(value: Option<f64>) -> String {
     percent(value.map(|share| 100.0 * share))
 }
 
-/// The highest risk of a flight: in judged time, or of a finding that lasted longer.
+/// The highest risk of a flight in the judged time, or the peak of a finding if it is higher.
 pub(crate) fn highest(assessed: &Assessment) -> Option<Peak> {
     let of_findings = assessed
         .findings
@@ -95,7 +95,7 @@ fn at(peak: Peak, clock: Clock) -> String {
     format!("{:.0} % at {}", peak.value_pct, clock.at(peak.t_s))
 }
 
-/// One entry for each cause, the gravest first, with the details of its worst finding.
+/// One entry for each cause, the most severe first, with the details of its most severe finding.
 pub(crate) fn findings(subject: &Subject, loaded: &Loaded) -> Markup {
     let assessed = &subject.assessed;
     let clock = Clock::Since(subject.stretch().start_s);

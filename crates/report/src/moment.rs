@@ -1,4 +1,4 @@
-//! The state at one time of a flight with an explanation, for programs that follow a cursor.
+//! The state of a flight at one time, with an explanation, for programs in which the user moves a time cursor.
 
 use std::collections::BTreeMap;
 

@@ -54,7 +54,7 @@ pub(super) fn panel(panel: &Panel, timeline: &Timeline, input: Option<usize>) ->
     }
 }
 
-/// The digits of a value at the cursor, if three do not show a thousandth of the scale.
+/// The number of digits for a value at the cursor, if the default does not show a thousandth of the scale.
 fn digits(panel: &Panel) -> Option<usize> {
     let Scale { low, high } = panel.scale;
     let largest = low.abs().max(high.abs());

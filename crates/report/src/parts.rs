@@ -180,8 +180,8 @@ impl<'a> Report<'a> {
     }
 }
 
-/// Converts markup to text. HTML allows no control characters, and text from a log must not change the direction of
-/// writing.
+/// Converts markup to text with hidden characters made visible: HTML allows no control characters, and text from a log
+/// must not change the direction of writing.
 pub(crate) fn shown(markup: Markup) -> String {
     visible_lines(&markup.into_string()).into_owned()
 }
@@ -203,7 +203,7 @@ fn section(
     }
 }
 
-/// The rules that were dominant at some time, and for which share of the time; all rules are in the rule set below.
+/// The rules that were dominant at some time, each with its share of the time. The part [`Part::Texts`] lists all rules.
 fn rules(model: &Model, assessed: &Assessment) -> Markup {
     let known = assessed.steps.iter().filter_map(|step| step.estimate);
     let total = known.clone().count();

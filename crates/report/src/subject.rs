@@ -1,4 +1,4 @@
-//! An assessed flight: what a report is about.
+//! An assessed flight, the subject of a report.
 
 use std::sync::Arc;
 

@@ -166,7 +166,8 @@ fn positions((a, b): (Signal<'_>, Signal<'_>), stretch: Stretch) -> Vec<(f64, f6
         .collect()
 }
 
-/// Metres north and east of the first of some positions in degrees; on the tangent plane, for flights of some kilometres.
+/// Converts positions in degrees to metres north and east of the first one, on the tangent plane; accurate for flights of
+/// some kilometres.
 fn local(degrees: Vec<(f64, f64, f64)>) -> Vec<(f64, f64, f64)> {
     let Some(&(_, zero_north, zero_east)) = degrees.first() else {
         return Vec::new();

@@ -376,7 +376,7 @@ pub(crate) fn unknown_share_pct(summary: &Summary) -> Option<f64> {
     (known_pct < 95.0).then_some(100.0 - known_pct)
 }
 
-/// `54 % of 1280`; `None` without any moment.
+/// Formats the share of moments that were followed by an error: `54 % of 1280`; `None` if there are no moments.
 pub(crate) fn share(counts: Followed) -> Option<String> {
     let share_pct = counts.share_pct()?;
     Some(format!("{share_pct:.0} % of {}", counts.moments))

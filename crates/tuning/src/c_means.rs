@@ -1,4 +1,4 @@
-//! Fuzzy c-means (Bezdek 1981): finds clusters of rows; each row belongs to every cluster by a degree.
+//! Fuzzy c-means (Bezdek 1981): finds clusters of rows; each row belongs to every cluster to a degree.
 
 use fastrand::Rng;
 
@@ -121,8 +121,8 @@ pub fn c_means(rows: &[Vec<f64>], settings: &Settings) -> Result<Clusters, Clust
     best.map(ascending).ok_or(ClusterError::Search)
 }
 
-/// Chooses initial centers that are far from each other: each further row is drawn with a
-/// probability proportional to its squared distance (k-means++).
+/// Chooses initial centers that are far from each other: each further row is drawn with a probability proportional to
+/// its squared distance from the nearest center so far (k-means++).
 fn begin(different: &[&Vec<f64>], settings: &Settings, random: &mut Rng) -> Vec<Vec<f64>> {
     let mut centers = vec![different[random.usize(..different.len())].clone()];
     while centers.len() < settings.clusters {
@@ -178,7 +178,8 @@ fn all_degrees(rows: &[Vec<f64>], centers: &[Vec<f64>], fuzzifier: f64) -> Vec<V
         .collect()
 }
 
-/// The degree of a row in each cluster: 1 / sum over all clusters of (distance / their distance)^(2 / (fuzzifier - 1)).
+/// The degree of a row in each cluster: `1 / sum_j (d_i / d_j)^(2 / (fuzzifier - 1))`, where `d_i` is the distance of
+/// the row from center `i`.
 fn degrees(row: &[f64], centers: &[Vec<f64>], fuzzifier: f64) -> Vec<f64> {
     let squares: Vec<f64> = centers.iter().map(|center| square(row, center)).collect();
     let at_center = squares.iter().filter(|square| **square == 0.0).count();
@@ -241,10 +242,10 @@ mod tests {
         values.iter().map(|value| vec![*value]).collect()
     }
 
-    /// For the rows -1, 0, 1 and 2 clusters the centers are at -c and c by symmetry. With the fuzzifier 2 the row 0 has the
-    /// degrees 1/2, and the row 1 has u = (1 + c)^2 / (2 + 2 c^2) in the cluster of c. The center is the mean weighted by
-    /// squares: c = (u^2 - (1 - u)^2) / (u^2 + 1/4 + (1 - u)^2). With u - (1 - u) = 2c / (1 + c^2) = s this is
-    /// c = s / ((1 + s^2) / 2 + 1/4).
+    /// With the rows -1, 0 and 1 and with two clusters, the centers are at -c and c by symmetry. If the fuzzifier is
+    /// 2, the row 0 has the degrees 1/2, and the row 1 has u = (1 + c)^2 / (2 + 2 c^2) in the cluster of c. The center
+    /// is the mean weighted by squares: c = (u^2 - (1 - u)^2) / (u^2 + 1/4 + (1 - u)^2). With u - (1 - u) = 2c / (1 +
+    /// c^2) = s this is c = s / ((1 + s^2) / 2 + 1/4).
     #[test]
     fn three_rows_have_memberships_computed_by_hand() {
         let settings = Settings {

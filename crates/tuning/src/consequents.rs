@@ -14,8 +14,8 @@ use crate::{
     parameters::{UNBOUNDED, bounds},
 };
 
-/// The ridge, relative to the largest curvature. If the rows do not determine a number, the ridge keeps its current
-/// value.
+/// The ridge, as a share of the diagonal elements: see [`ridged`]. Numbers that the rows do not determine keep their
+/// current values because of it.
 const RIDGE: f64 = 1e-8;
 
 /// The largest ridge. The steps of numbers that the rows do determine are reduced by about this share.
@@ -171,8 +171,8 @@ fn within(
     steps
 }
 
-/// Solves `(squares + ridge) x = products`. The ridge is a share of each diagonal element, and grows until the matrix
-/// is positive definite.
+/// Solves `(squares + ridge) x = products`, where the ridge is that of [`ridged`] and grows until the matrix is
+/// positive definite.
 pub(crate) fn solve(
     squares: DMatrix<f64>,
     products: &DVector<f64>,
@@ -192,7 +192,8 @@ pub(crate) fn solve(
     None
 }
 
-/// A matrix whose diagonal elements are increased by a share.
+/// Adds a ridge to a matrix: each diagonal element is increased by the share `ridge` of the sum of itself and a
+/// thousandth of the largest one.
 fn ridged(mut squares: DMatrix<f64>, ridge: f64) -> DMatrix<f64> {
     let largest = squares.diagonal().max();
     for i in 0..squares.nrows() {

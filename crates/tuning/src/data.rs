@@ -27,8 +27,8 @@ impl Data {
     /// products, would overflow.
     pub const LARGEST: f64 = *WEIGHTS.end();
 
-    /// The largest distance of a target of [`Loss::Squared`] from the output's range, in widths of the range. Beyond
-    /// that, the loss changes by less than its rounding errors.
+    /// The largest distance of a target of [`Loss::Squared`] from the output's range, in widths of the range. For
+    /// targets farther away, changes of the numbers affect the loss by less than its rounding errors.
     pub const FARTHEST: f64 = 1e6;
 
     /// Returns the reason why a row cannot be used, if there is one. `values` are its inputs followed by its output.

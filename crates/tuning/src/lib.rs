@@ -10,8 +10,8 @@
 //! consequents of a Takagi-Sugeno output are computed by least squares at every step, as in ANFIS (Jang 1993).
 //! [`cross_validate`] estimates the loss of a tuned model on unseen rows.
 //!
-//! [`identify`] finds inputs, partitions and rules from only data; [`c_means`] finds clusters of rows, which can be the
-//! terms of an input; [`simplify()`] reduces the number of rules with the same outputs.
+//! [`identify`] finds inputs, partitions and rules from data alone; [`c_means`] finds clusters of rows, which can be
+//! the terms of an input; [`simplify()`] reduces the number of rules and keeps the outputs.
 
 pub mod c_means;
 mod confusion;
@@ -61,8 +61,8 @@ pub struct TuneResult {
     pub without_value: usize,
     /// The numbers that changed.
     pub moved: Vec<ChangedNumber>,
-    /// The constants, as `variable.term`, that are at the end of the range (see [`Settings::beyond_range`]) and would
-    /// have a smaller loss beyond it.
+    /// The constants, as `variable.term`, that are at an end of the range (see [`Settings::beyond_range`]) although
+    /// the loss would be smaller beyond it.
     pub at_bounds: Vec<String>,
     /// Whether `watch` ended the search.
     pub is_stopped: bool,
@@ -243,7 +243,7 @@ fn rounded(
     Ok(at)
 }
 
-/// The constants at a bound whose loss is smaller slightly beyond it.
+/// The constants at a bound beyond which the loss would be smaller.
 fn at_bounds(objective: &Objective<'_>, parameters: &Parameters, at: &Point) -> Vec<String> {
     const BEYOND: f64 = 1e-3;
     let mut names = Vec::new();

@@ -31,8 +31,8 @@ const LEAST_SHARE: f64 = 1e-3;
 const AT_END: f64 = 1e-9;
 
 impl OrderedPositions {
-    /// `positions` ascend from `low` to `high`. If one is closer to the next than `apart`, that distance is the
-    /// minimum.
+    /// Creates positions from `positions`, which ascend from `low` to `high`, each with whether it is fixed. The
+    /// minimum distance of neighbours is `apart`, or their current distance if that is smaller.
     pub(crate) fn new(
         positions: &[(f64, bool)],
         low: f64,

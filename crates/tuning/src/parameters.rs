@@ -1,5 +1,5 @@
-//! The parameters of a model that may change, as free numbers. For any values the model satisfies its constraints; all
-//! zeros are the original model.
+//! The parameters of a model that may change, as free numbers. With any values of these numbers, the model satisfies
+//! its constraints; with zeros, it is the original model.
 
 use fuzzy::{
     Model,
@@ -19,7 +19,7 @@ pub(crate) struct Parameters {
     /// The indices of the terms that are fitted in closed form. Only a model with one output has such terms: with a
     /// chain of outputs, the problem is not linear.
     pub(crate) fitted: Vec<usize>,
-    /// The index of the output whose values the rows have.
+    /// The index of the output whose true values the rows contain.
     pub(crate) target: usize,
 }
 
@@ -39,7 +39,7 @@ enum FreeParameters {
         anchors: OrderedPositions,
         anchored: Vec<AnchoredTerm>,
     },
-    /// The consequents of a Takagi-Sugeno output: the scale of each number of each term.
+    /// The consequents of a Takagi-Sugeno output: the index of each term, and how each of its numbers may change.
     Consequents(Vec<(usize, Vec<ConsequentParameter>)>),
 }
 
@@ -74,8 +74,8 @@ enum ParameterLink {
     Fixed(f64),
 }
 
-/// The largest factor by which a width, a slope or a distance from an anchor grows or shrinks: a vanishing one would
-/// not be readable.
+/// The largest factor by which a width, a slope or a distance from an anchor grows or shrinks. It keeps terms
+/// readable: no width vanishes.
 pub(crate) const MOST_FACTOR: f64 = 5.0;
 
 /// The factor of a free number: about `exp(z)`, between 1 / [`MOST_FACTOR`] and [`MOST_FACTOR`].
@@ -352,7 +352,7 @@ pub(crate) fn is_width(name: &str, role: Role) -> bool {
     role == Role::Positive || name.ends_with("slope")
 }
 
-/// The consequents that may change: the index of each term, with the scale of each of its numbers.
+/// The consequents that may change: the index of each term, and how each of its numbers may change.
 fn consequents(
     model: &Model,
     output: &Output,

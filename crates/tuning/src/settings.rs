@@ -58,8 +58,8 @@ pub struct Settings {
 }
 
 impl Default for Settings {
-    /// The defaults: squared error; all terms may change, at least 1 % of the range apart and
-    /// within it; fixed weights; three digits; one start of 100 steps.
+    /// The defaults: squared error; all terms may change, but stay within the range and at least 1 % of it apart;
+    /// fixed weights; three digits; one start of 100 steps.
     fn default() -> Self {
         Settings {
             loss: Loss::Squared,

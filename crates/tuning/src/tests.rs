@@ -386,8 +386,7 @@ rules: [IF heat IS cool THEN speed IS slow, IF heat IS hot THEN speed IS fast]
     ))
 }
 
-/// Whether fitted or searched, constants end at the best value within the range: the error is the minimum over all
-/// values.
+/// Constants end at the values within the range that have the smallest error, whether they are fitted or searched.
 #[test]
 fn constants_are_optimal_within_the_range() {
     let heat: Vec<f64> = (0..=20).map(|i| f64::from(i) / 2.0).collect();
@@ -451,8 +450,7 @@ fn constants_are_optimal_within_the_range() {
     assert_eq!(numbers(&outside.unwrap().model)[3].value, 12.0);
 }
 
-/// The rows do not determine one of the two constants by itself, and require values far above the range: both end at
-/// its upper end.
+/// All targets are far above the range, so both constants end at its upper end.
 #[test]
 fn constants_end_at_the_end_of_the_range_for_targets_far_beyond_it() {
     let heat: Vec<f64> = (0..=20).map(|i| f64::from(i) / 2.0).collect();
@@ -477,7 +475,8 @@ fn constants_end_at_the_end_of_the_range_for_targets_far_beyond_it() {
     }
 }
 
-/// One constant is far beyond the range and the other inside: the latter has its best value and is not affected.
+/// The rows pull one constant far beyond the range, and the other to a value inside. The first does not affect the
+/// second.
 #[test]
 fn a_constant_inside_the_range_is_optimal_beside_one_at_its_end() {
     let heat: Vec<f64> = (0..=20).map(|i| f64::from(i) / 2.0).collect();
@@ -501,7 +500,7 @@ fn a_constant_inside_the_range_is_optimal_beside_one_at_its_end() {
     assert_eq!(tuned.at_bounds, ["speed.fast"]);
 }
 
-/// A peak that the rows pull out of the range ends exactly at its end, without a rounding error.
+/// A peak that the rows pull beyond the range ends exactly at the end of the range, without a rounding error.
 #[test]
 fn a_peak_ends_at_the_end_of_the_range_exactly() {
     let heat: Vec<f64> = (0..=40).map(|i| f64::from(i) / 4.0).collect();
@@ -530,7 +529,7 @@ fn numbers_of_another_model_with_the_same_terms_are_used() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// Noise moves the peaks and consequents; order and monotone inputs are still kept.
+    /// Even if noise moves the peaks and consequents, the order of terms and the monotonicity in inputs are kept.
     #[test]
     fn constraints_hold_on_random_rows(seed in any::<u64>()) {
         let mut random = fastrand::Rng::with_seed(seed);
@@ -561,7 +560,7 @@ proptest! {
     }
 }
 
-/// An intermediate output `comfort`, which is not a column of the rows.
+/// A model with an intermediate output `comfort`, which is not a column of the rows.
 fn chain(comfort: [f64; 2], fast: f64) -> Model {
     let [poor, good] = comfort;
     parse(&format!(

@@ -25,7 +25,7 @@ pub struct Validation {
     pub after: Interval,
     /// The reduction of the loss.
     pub gain: Interval,
-    /// For truths of 0 and 1: predictions on unseen rows compared with the observed share, by tenths of the range.
+    /// If the truths are 0 and 1: the mean prediction and the observed share of ones in each tenth of the range.
     pub reliability: Vec<Bin>,
     /// The confusion matrix of the cross-validation, if the truths are classes and the loss is not
     /// a ranking.
@@ -90,8 +90,9 @@ pub struct CurvePoint {
 /// The number of parts into which the known rows are divided for a learning curve.
 const EIGHTHS: usize = 8;
 
-/// Computes [`cross_validate`] with an eighth, a quarter and half of the known rows. The last point, for all of them,
-/// is `worth`, the cross-validation with the same arguments. If the curve still falls at its end, more rows would help.
+/// Computes the loss of [`cross_validate`] with models tuned on an eighth, a quarter and half of the rows outside the
+/// fold. The last point, for all of these rows, is taken from `worth`, the result of [`cross_validate`] with the same
+/// arguments. If the curve still falls at its end, more rows would help.
 ///
 /// # Errors
 /// As [`tune`].

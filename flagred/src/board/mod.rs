@@ -193,7 +193,7 @@ impl Plan<'_> {
         )
     }
 
-    /// Whether the risk depends on an input of the profile.
+    /// Whether the risk depends on the input of the profile with this index.
     pub fn needs(&self, input: usize) -> bool {
         self.feed().needs(input)
     }
@@ -211,7 +211,7 @@ impl Plan<'_> {
         }
     }
 
-    /// The number of outputs that propositions can be about.
+    /// The number of outputs that rules read: all outputs if there are stages, otherwise 0.
     const fn read_outputs(&self) -> usize {
         match self.rules.stages {
             [] => 0,
@@ -230,7 +230,7 @@ impl Plan<'_> {
         })
     }
 
-    /// The cause of the risk. `rules` must contain the outcomes at the same inputs.
+    /// The cause of the risk. `rules` must have been evaluated at the same inputs.
     fn cause(
         &self,
         inputs: &[f64],
@@ -304,8 +304,8 @@ pub struct Monitor<'a> {
 }
 
 impl<'a> Monitor<'a> {
-    /// Creates a monitor of a new flight. The number of motors is that of the memory. A profile that reads no motors
-    /// needs none.
+    /// Creates a monitor of a new flight. The memory determines the number of motors, which may be 0 if the profile
+    /// reads no motors.
     ///
     /// # Errors
     /// If the memory does not have the sizes that the plan requires, if motors are missing, or if the plan is damaged.
@@ -403,14 +403,14 @@ impl<'a> Monitor<'a> {
         update
     }
 
-    /// The risk at values of the inputs, in the order of the profile, independent of the flight. `None` if no rule
-    /// fires and the gap is not filled, or if a value is not finite.
+    /// The risk for given values of the inputs, in the order of the profile, independent of the flight. `None` if no
+    /// rule fires and the gap is not filled, or if a value is not finite.
     pub fn at(&mut self, inputs: &[f64]) -> Option<Estimate> {
         self.plan.estimate(inputs, self.point, &mut self.rules)
     }
 
-    /// The cause of the risk at values of the inputs, in the order of the profile, independent of the flight. `None` if
-    /// no rule raises the risk.
+    /// The cause of the risk for given values of the inputs, in the order of the profile, independent of the flight.
+    /// `None` if no rule raises the risk.
     pub fn cause_at(&mut self, inputs: &[f64]) -> Option<Cause> {
         let said = self.at(inputs).filter(|said| said.filled_from.is_none())?;
         self.plan

@@ -10,7 +10,7 @@ use crate::{
     window::Window,
 };
 
-/// The sizes of a plan's memory, without its motors.
+/// The sizes of a plan's memory, without the memory of its motors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sizes {
     /// The number of floating-point numbers.
@@ -102,7 +102,7 @@ impl Plan<'_> {
 
 /// The memory of a monitor as one value. An exported profile defines the type with its sizes.
 ///
-/// A static one is all zeros, so it takes no space in the firmware image.
+/// A static `Storage` is all zeros, so it takes no space in the firmware image.
 ///
 /// # Example: `Storage<4>` of the exported profile `flagred-paper`
 /// ```

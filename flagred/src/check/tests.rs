@@ -170,7 +170,7 @@ fn the_levels_of_another_risk_are_checked_at_their_position() {
     assert_eq!(estimator.unwrap().others().len(), 1);
 }
 
-/// The battery is one more vote in the default rules, or a risk of its own.
+/// Tests the battery both as one more vote in the default rules, and as a risk of its own.
 #[test]
 fn an_input_that_raises_no_level_alone_is_reported_as_outvoted() {
     let rules = crate::shipped::RULE_SETS[0].text;

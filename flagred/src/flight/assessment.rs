@@ -21,7 +21,8 @@ pub struct Assessment {
     pub inputs: Vec<String>,
     /// The inputs whose values were assumed, at least until their signals were known.
     pub assumed_inputs: Vec<AssumedInput>,
-    /// The reason why a risk was unknown in the air, the one that applied for the longest time; `None` if all were always known.
+    /// The reason why a risk was unknown in the air; of several reasons, the one that applied longest. `None` if all
+    /// risks were always known.
     pub unknown_risk: Option<String>,
     /// The risk over time.
     pub steps: Vec<Step>,
@@ -69,7 +70,7 @@ impl AssumedInput {
 pub struct Summary {
     /// The time in the air, summed over all flights of a log, in seconds.
     pub in_air_s: f64,
-    /// The time in the air with a known risk (with several risks, with all of them known), in seconds.
+    /// The time in the air with a known risk, in seconds. If there are several risks, all of them must be known.
     pub assessed_s: f64,
     /// The time in the air with a risk interpolated where no rule applies, in seconds.
     pub filled_s: f64,

@@ -71,8 +71,8 @@ impl Finding {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Cause {
-    /// The input that distinguishes the rule: the input of the proposition in its antecedent that the fewest rules
-    /// share.
+    /// The input that distinguishes the rule. Of the true propositions in the rule's antecedent, the one that the
+    /// fewest rules share is about this input.
     pub input: String,
     /// The value of that input.
     pub value: f64,
@@ -129,7 +129,7 @@ inputs:
         Estimator::new(&profile, &rules).unwrap()
     }
 
-    /// The cause at values of the inputs, according to the engine and to the exported plan.
+    /// The cause for given values of the inputs, according to the engine and to the exported plan.
     fn cause(estimator: &Estimator, inputs: [f64; 2]) -> Option<String> {
         let risk_pct = estimator.at(&inputs).unwrap().risk_pct;
         let found = estimator.cause(&inputs, risk_pct, &mut Memory::of(estimator));
@@ -199,7 +199,7 @@ rules:
         assert!(all.contains(&"strain somewhat high".into()), "{all:?}");
     }
 
-    /// A hedge, and an alternative that is not true.
+    /// One rule contains a term with a hedge, and an alternative that is not true.
     #[test]
     fn a_term_is_reported_with_its_hedges_and_only_where_it_applies() {
         let rules = RULES.replace(

@@ -22,7 +22,7 @@ pub(super) struct Losses {
     ignored: u64,
 }
 
-/// A time during which the command of a motor was unknown, once or several times.
+/// A period in which the command of a motor was unknown, once or several times.
 #[derive(Debug, Clone, Copy)]
 struct MotorLoss {
     /// The index of the first such motor.
@@ -82,7 +82,7 @@ impl Losses {
         }
     }
 
-    /// The reason why a flight of this length without findings is not GOOD.
+    /// The reason why a flight of this length is not GOOD although it has no findings; `None` if it can be GOOD.
     pub(super) fn reason(&self, in_air_s: f64, longest_gap_s: f64) -> Option<Reason> {
         if let Some(at_s) = self.set_back_s {
             return Some(Reason::SetBackInAir { at_s });

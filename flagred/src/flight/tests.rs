@@ -5,7 +5,7 @@ mod loss;
 mod uncertainty;
 mod words;
 
-/// Flies at 50 Hz. Each phase has its seconds, whether it is in the air, and the motors.
+/// Flies at 50 Hz. Each phase is its duration in seconds, whether it is in the air, and the motor commands.
 fn fly(phases: &[(f64, bool, [f64; 4])]) -> Assessment {
     let estimator = shipped::flagred_paper();
     let mut assessor = Assessor::new(&estimator, Craft::new(4), Some(0.1)).unwrap();
@@ -165,7 +165,8 @@ const OCTAQUAD: [crate::monitor::Factors; 8] = [
 ];
 
 /// Flies an octaquad for two minutes with one motor dead after `from_s`: motor 2 is at 0.86, the opposite one at 0.39.
-/// The same flight runs on board. Returns the assessment, and the levels from 30 s after the fault on.
+/// The on-board monitor must give the same updates. Returns the assessment, and the levels from 30 s after the fault
+/// on.
 fn with_a_dead_motor(from_s: f64) -> (super::Assessment, Vec<Level>) {
     let estimator = shipped::flagred();
     let craft = Craft::new(8).with_geometry(&OCTAQUAD);

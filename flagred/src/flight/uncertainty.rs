@@ -11,8 +11,8 @@ use crate::{
     verdict::{Level, Measure},
 };
 
-/// The values that a risk may have, because its inputs are computed from a limited number of samples. It contains the
-/// risk for all values of the inputs within their intervals of 95 %. docs/method.md defines it.
+/// The values that a risk may have, because its inputs are computed from a limited number of samples. This interval
+/// contains the risk for all values of the inputs within their 95 % intervals. docs/method.md defines it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -62,8 +62,8 @@ pub(super) struct UncertainPeak {
 }
 
 impl UncertainPeak {
-    /// Keeps the state after a sample if the open finding of the risk has its highest risk then. `peaks` has one
-    /// element for each finding, the open one last.
+    /// Keeps the state after a sample if the risk of this sample is the highest of the open finding so far. `peaks` has
+    /// one element for each finding, the open one last.
     pub(super) fn keep(peaks: &mut Vec<UncertainPeak>, monitor: &Monitor, estimate: Estimate) {
         let open = monitor.open_of_risk();
         let Some(open) = open
@@ -115,7 +115,7 @@ impl<'e> RiskBounds<'e> {
         }
     }
 
-    /// The interval of a risk; where no rule applies, from the values that fill the gap.
+    /// The interval of a risk; where no rule applies, it is computed from the values that fill the gap.
     pub(super) fn of(&mut self, risk: &UncertainRisk) -> Option<RiskInterval> {
         let risk_pct = risk.estimate.risk_pct;
         let mut values = Interval::from(risk_pct);

@@ -20,8 +20,8 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// The worse of the verdicts of two flights. A flight that was lost in the air is worse than GOOD; a flight
-    /// without a verdict for another reason counts only if neither flight has a verdict.
+    /// The worse of the verdicts of two flights. A flight that was lost in the air is worse than GOOD; a flight that
+    /// has no verdict for another reason is ignored unless neither flight has a verdict.
     ///
     /// ```
     /// use flagred::{flight::{Reason, Verdict}, verdict::Level};
@@ -94,11 +94,11 @@ pub enum Reason {
     /// of the time.
     #[error("{}", motor_unknown((.motor, .others), .command, (.from_s, .to_s), .unknown_s))]
     MotorUnknown {
-        /// The number of the motor, the first of several.
+        /// The number of the motor; of several motors, the one that was unknown first.
         motor: usize,
         /// Whether other motors were unknown too.
         others: bool,
-        /// The first of these commands, if it is a number far outside 0 to 1.
+        /// The first unknown command of that motor, if it is a number far outside 0 to 1.
         command: Option<f64>,
         /// The start of the time with unknown commands, in seconds.
         from_s: f64,
@@ -142,7 +142,7 @@ pub enum Reason {
         /// The time at which the clock went back, in seconds.
         at_s: f64,
     },
-    /// Samples in the air had times that are not after the time of the sample before.
+    /// Samples in the air had times that are not later than the time of the previous sample.
     #[error("{ignored} samples in the air were ignored: their times are unknown or go back")]
     SamplesIgnored {
         /// The number of ignored samples.

@@ -86,8 +86,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Whether all cells with these intervals of the first inputs are covered. A rule that reads no further input
-    /// covers all of them at once.
+    /// Whether all cells that have the intervals in `cell` for the first inputs are covered. A rule that reads no
+    /// further input covers all of them at once.
     fn is_covered(&mut self) -> bool {
         self.steps += self.rules.len();
         let known = self.cell.len();
@@ -163,7 +163,7 @@ fn least_degrees(input: &Variable) -> Least {
     cuts.windows(2).map(least).collect()
 }
 
-/// The input and term of each proposition, if the condition is propositions joined by AND; otherwise `None`.
+/// The input and term of each proposition, if the condition consists of propositions joined by AND; otherwise `None`.
 fn literals(model: &Model, condition: &Condition) -> Option<Vec<(usize, usize)>> {
     match condition {
         Condition::Is(Proposition {

@@ -22,8 +22,8 @@ impl Field<'_> {
             .collect()
     }
 
-    /// The covered knots, highest values first. Methods prefer the first of equally near knots, so in doubt they use
-    /// the higher risk.
+    /// The covered knots, highest values first. Methods prefer the first of equally near knots, and thereby the one
+    /// with the highest risk.
     pub(super) fn known_highest_first(&self) -> Vec<usize> {
         let mut known: Vec<usize> = (0..self.covered.len())
             .filter(|k| self.covered[*k])

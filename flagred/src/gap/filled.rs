@@ -41,9 +41,9 @@ impl FilledKnots<'_> {
         })
     }
 
-    /// The smallest and the largest value within intervals. Between knots the value is linear along each input, so both are
-    /// at a vertex of the grid of knots and ends. With very many vertices it is the range of all values. `None` if there
-    /// is another number of intervals.
+    /// The smallest and the largest value within intervals. Between knots the value is linear along each input, so both
+    /// extremes are at vertices of the grid formed by the knots inside the intervals and the ends of the intervals. If
+    /// there are too many vertices, this is the range of all values. `None` if there is not one interval for each input.
     #[cfg(feature = "std")]
     pub(crate) fn within(&self, inputs: &[Interval]) -> Option<Interval> {
         const MOST_VERTICES: usize = 4096;

@@ -12,15 +12,16 @@ use super::{
 /// The values that fill the gaps of a rule set, where no rule applies.
 ///
 /// The rules are evaluated at knots: the peaks of the terms and the points halfway between them. Knots that are a gap
-/// get their value from the covered knots by a [`GapMethod`]. Its distances are scaled by the typical change of the
+/// get their value from the covered knots by a [`GapMethod`], whose distances are scaled by the typical change of the
 /// output. Between knots the value is interpolated linearly along each input. Beyond the outermost peaks, where the
 /// rules cannot distinguish points, it is constant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Filling {
-    /// As in [`FilledKnots`]. The values are empty if all knots are covered, if none is, or if
-    /// there are too many inputs.
+    /// See [`FilledKnots::coordinates`].
     places: Vec<f64>,
     starts: Vec<u32>,
+    /// See [`FilledKnots::values`]. Empty if the rules are proven to leave no gap, if no knot is covered, or if there are
+    /// too many inputs.
     values: Vec<f64>,
     distances: Vec<f64>,
     coverage_below: f64,

@@ -1,4 +1,4 @@
-//! The knots at which a rule set is evaluated, to fill its gaps from there.
+//! The knots at which a rule set is evaluated, and from which its gaps are filled.
 
 use alloc::{vec, vec::Vec};
 
@@ -31,7 +31,7 @@ pub(super) struct Knots {
 
 impl Knots {
     /// The grid over the part of each input in which terms change; beyond it the rules cannot distinguish points. An
-    /// input that is not in `read`, by name, has one coordinate.
+    /// input whose name is not in `read` has one coordinate.
     ///
     /// `None` if even the peaks are too many, as for 16 inputs of two terms each.
     pub(super) fn of(model: &Model, read: &[&str]) -> Option<Knots> {

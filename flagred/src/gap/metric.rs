@@ -1,8 +1,8 @@
 //! The distance between knots, scaled by the typical change of the output between them.
 //!
 //! With distances in shares of the ranges, an input with a wide range and narrow terms would hardly count, and an
-//! irrelevant input would count as much as a decisive one. Instead, a step along an input counts by the root mean
-//! square of the change of the output over such steps in the covered part. This is the geometric anisotropy of
+//! irrelevant input would count as much as a decisive one. Instead, the length of a step along an input is the root
+//! mean square of the change of the output over such steps in the covered part. This is the geometric anisotropy of
 //! geostatistics, at the shortest lag.
 
 use alloc::vec::Vec;

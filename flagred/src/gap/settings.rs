@@ -71,8 +71,8 @@ impl GapMethod {
 pub struct GapSettings {
     /// The method that fills gaps.
     pub method: GapMethod,
-    /// A cell with a lower coverage is a gap. `None` is the minimum with which the dominant antecedent can fire, see
-    /// [`GapSettings::coverage_below`].
+    /// A cell with a lower coverage is a gap. `None` selects the lowest strength with which the dominant antecedent can
+    /// fire, see [`GapSettings::coverage_below`].
     pub coverage_below: Option<f64>,
 }
 
@@ -80,10 +80,10 @@ impl GapSettings {
     /// The coverage below which a cell of the map of a model is a gap.
     ///
     /// The default follows from the operators. If the terms of every input sum to 1 everywhere, the dominant antecedent
-    /// has memberships of at least 0.5, the value where two neighbours meet. With the minimum as AND it then fires with
-    /// at least 0.5, with the product of n inputs with at least `0.5^n`. Less means that the dominant antecedent has no
-    /// rule. With other terms, other conjunctions, rule blocks and activation methods, only points that no rule covers
-    /// at all are gaps.
+    /// has memberships of at least 0.5, the value where two neighbours meet. It then fires with a strength of at least
+    /// 0.5 if AND is the minimum, and of at least `0.5^n` if AND is the product and there are n inputs. A lower
+    /// coverage means that the dominant antecedent has no rule. With other terms, other conjunctions, rule blocks and
+    /// activation methods, only points that no rule covers at all are gaps.
     pub fn coverage_below(&self, model: &Model) -> f64 {
         let least = || match model.operators.and {
             _ if !is_plain(model) => f64::MIN_POSITIVE,

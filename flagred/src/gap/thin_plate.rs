@@ -77,7 +77,7 @@ fn value_at_origin(centres: &[Vec<f64>], known: &[f64]) -> Option<f64> {
     Some(plane.first()? + bumps.sum::<f64>())
 }
 
-/// `r^2 ln r = r^2 ln(r^2) / 2` of a difference of points.
+/// `phi(r) = r^2 ln r = r^2 ln(r^2) / 2`, where `r` is the length of `difference`.
 fn phi(difference: impl Iterator<Item = f64>) -> f64 {
     let square: f64 = difference.map(|x| x * x).sum();
     if square > 0.0 {

@@ -103,25 +103,25 @@ pub struct Reliability {
     pub from_pct: f64,
     /// The upper end of the band in %, exclusive except for 100.
     pub to_pct: f64,
-    /// The frequency on real vehicles.
+    /// The frequency on flights of real vehicles.
     pub real: Option<Followed>,
-    /// The frequency on simulated vehicles.
+    /// The frequency on flights of simulated vehicles.
     pub simulated: Option<Followed>,
 }
 
-/// The number of moments that were followed by an attitude error over 5 degrees within 5 s.
+/// How many of the moments were followed by an attitude error over 5 degrees within 5 s.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Followed {
     /// The number of moments, one every 0.5 s.
     pub moments: u64,
-    /// The number of moments that were followed by such an error.
+    /// The number of these moments that were followed by an attitude error over 5 degrees within 5 s.
     pub followed: u64,
 }
 
 impl Followed {
-    /// The share of moments that were followed by such an error, in %; `None` without any moment.
+    /// The share of `followed` in `moments`, in %; `None` without any moment.
     pub fn share_pct(&self) -> Option<f64> {
         (self.moments > 0).then(|| 100.0 * self.followed as f64 / self.moments as f64)
     }
@@ -166,8 +166,9 @@ pub struct ProfileInput {
     pub if_missing: Option<f64>,
 }
 
-/// The division of an input by another input of the profile. With the value `x` of the source, the value of the input is
-/// `x / max(per, at_least)`. The other input must not be a ratio itself, and the rule set does not need to have it.
+/// The division of an input by another input of the profile. The value of the input is `x / max(per, at_least)`, where
+/// `x` is the value of its source. The other input must not be a ratio itself, and the rule set does not need to have
+/// it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ratio {
     /// The name of the input to divide by.
@@ -226,7 +227,7 @@ impl Profile {
         self.verdict.notices.any() || signals.any(Signal::is_made_of_motors)
     }
 
-    /// The names of the other signals that the profile needs, without duplicates.
+    /// The names of the signals, other than motor commands, that the profile needs, without duplicates.
     pub fn signals(&self) -> Vec<&str> {
         let mut names: Vec<&str> = Vec::new();
         for input in &self.inputs {

@@ -234,7 +234,7 @@ fn method(node: &Node, found: &mut Found) -> Option<GapMethod> {
     })
 }
 
-/// Reads the other outputs that are risks; missing settings are those of the first risk.
+/// Reads the other outputs that are risks; missing settings are taken from the first risk.
 fn other_risks(fields: &Fields, defaults: &OtherRisk, found: &mut Found) -> Vec<OtherRisk> {
     let entries = fields.get("other_risks").and_then(|node| {
         let help =

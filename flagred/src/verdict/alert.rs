@@ -36,9 +36,9 @@ pub(crate) struct Now {
     pub(crate) t_s: f64,
     pub(crate) risk_pct: f64,
     pub(crate) elevated_pct: f64,
-    /// Whether the vehicle just took off, when only FAIL is raised.
+    /// Whether the take-off was so recent that only FAIL is raised.
     pub(crate) takes_off: bool,
-    /// Whether all motors slow down together, as at touch-down, when FAIL is not raised.
+    /// Whether all motors slow down together, as at touch-down; then FAIL is not raised.
     pub(crate) sinks: bool,
     /// Whether the motors idle in the air.
     pub(crate) falls: bool,
@@ -148,8 +148,8 @@ impl Alert {
         step
     }
 
-    /// Records the margins of the motors, starting over whenever a level is first reached. The motor of a finding is thus
-    /// chosen by the period that raised the level, not by the time before or after.
+    /// Records the margins of the motors, starting over whenever a level is first reached. The motor of a finding is
+    /// thus chosen from the period that raised the level; earlier and later margins are ignored.
     fn record(&self, reached: &[bool; 2], motors: &mut [Motor]) {
         let begins = |i: usize| reached[i] && self.reached_since_s[i].is_none();
         let (begins, any) = (begins(0) || begins(1), reached[0] || reached[1]);
@@ -208,7 +208,7 @@ impl Alert {
     }
 
     /// Ends the flight, or the observed part of it. A landing withdraws a WARN that was raised just before it, unless
-    /// FAIL is being reached: that is not a landing.
+    /// FAIL is being reached, which does not count as a landing.
     pub(crate) fn end(&mut self, t_s: f64, landed: bool) -> Step {
         let change = (self.level > Level::Good).then_some(Level::Good);
         self.level = Level::Good;
@@ -232,7 +232,7 @@ impl Alert {
 }
 
 /// The motor with the least mean margin while the level was being reached, if it is near a limit. When a motor stops,
-/// the opposite one soon stops too, so of several motors at zero the one that has been there longest counts.
+/// the opposite one soon stops too, so of several motors at zero the one that has been at zero longest is chosen.
 fn weakest(motors: &[Motor]) -> Option<MotorFinding> {
     let known = motors
         .iter()

@@ -20,7 +20,8 @@ const LOAD_S: f64 = 3.0;
 /// The time for which the trim is learned before anything is compared with it, in seconds.
 const TRIM_KNOWN_AFTER_S: f64 = 10.0;
 
-/// The minimum share of all shifts that one weak motor must explain. A vehicle that leans towards a motor has 2/3.
+/// The minimum share of all shifts that one weak motor must explain. If the vehicle leans towards a motor, the share of
+/// that motor is 2/3.
 const ONE_MOTOR: f64 = 0.75;
 
 /// Shifts that differ by less than this count as equal.
@@ -60,7 +61,7 @@ impl Balance {
         sinks: false,
     };
 
-    /// Whether all motors work as before the alarm; without a trim from before it, whether they work alike.
+    /// Whether all motors work as before the alarm; if no trim was learned before it, whether they work alike.
     pub(super) fn is_back(&self) -> bool {
         self.is_back
     }
@@ -131,7 +132,7 @@ pub(super) fn is_together(motors: &[Motor]) -> bool {
     !is_settled(motors) || !is_apart
 }
 
-/// Whether the averages of the last seconds cover that time.
+/// Whether the recent difference of every motor is averaged over at least [`LATELY_S`].
 fn is_settled(motors: &[Motor]) -> bool {
     motors.iter().all(|m| m.difference.known_s >= LATELY_S)
 }
@@ -157,8 +158,8 @@ fn weak(motors: &[Motor], limit: f64) -> Option<Unbalanced> {
     })
 }
 
-/// The motor that is out of balance, if a motor deviates from its trim by more than the limit, without the part that
-/// commands yaw.
+/// The motor that is out of balance, if the command of a motor, without its yaw part, deviates from the trim by more
+/// than the limit.
 fn from_trim(motors: &[Motor], limit: f64) -> Option<Unbalanced> {
     let farthest = less_yaw(motors, Motor::shift).fold(0.0, |most: f64, x| most.max(x.abs()));
     let motor = culprit(motors, Motor::shift)?;

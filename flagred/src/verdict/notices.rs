@@ -57,7 +57,7 @@ impl Notices {
     }
 
     /// Processes a sample in flight at `t_s` that applies to the `held_s` seconds before. `is_calm` is true while there
-    /// is not an alarm.
+    /// is no alarm.
     pub(crate) fn push(
         &mut self,
         (t_s, held_s): (f64, f64),
@@ -149,8 +149,8 @@ impl Passed {
 }
 
 impl Watch {
-    /// Updates the finding. An open finding stays open until the flight ends, with the motor and the limit of the first
-    /// time.
+    /// Updates the finding. An open finding stays open until the flight ends, and keeps the motor and the limit with
+    /// which it was opened.
     fn push(&mut self, t_s: f64, level: Level, limit: Option<Limit>, passed: Option<Passed>) {
         let (Some(Limit { after_s, .. }), Some(passed)) = (limit, passed) else {
             self.passed_since_s = None;

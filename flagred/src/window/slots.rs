@@ -14,8 +14,8 @@ struct Mean {
 }
 
 impl Window {
-    /// The moments of the samples of each slot, of the oldest one the part inside the window, and the middle of their
-    /// time in seconds relative to now.
+    /// For each slot: the middle of the time of its samples, in seconds relative to now, and the moments of the
+    /// samples. Of the oldest slot, only the part inside the window counts.
     pub(crate) fn parts(&self) -> impl Iterator<Item = (f64, Moments)> + Clone {
         let inside = self.inside_of_oldest();
         (0..self.len).map(move |i| {
@@ -56,9 +56,9 @@ impl Window {
 }
 
 impl Window {
-    /// The value below which `percent` % of the weight of the slots' means is. The means are sorted, and each is at the
-    /// middle of its weight; between two of them the percentile is interpolated linearly, beyond the outer ones it is
-    /// constant. `None` in an empty window.
+    /// The value below which `percent` % of the total weight of the slots' means lies. The means are sorted, and each
+    /// is at the middle of its weight; between two of them the percentile is interpolated linearly, beyond the outer
+    /// ones it is constant. `None` in an empty window.
     pub(crate) fn percentile(&self, percent: f64) -> Option<f64> {
         let mut sorted = [(0.0, 0.0); SLOTS + 2];
         let mut count = 0;

@@ -7,8 +7,8 @@ use crate::model::{MembershipFunction, ShapeParts, Variable};
 /// The number of evenly spaced steps over a range.
 const EVENLY_SPACED: usize = 64;
 
-/// Returns the values of a variable to evaluate: evenly spaced ones including both ends, and the parameters of the
-/// terms that are in the range. They are in ascending order without duplicates.
+/// Returns the values at which a variable is evaluated: evenly spaced values including both ends, and the parameters
+/// of the terms that are in the range. They are in ascending order without duplicates.
 pub(super) fn values(variable: &Variable) -> Vec<f64> {
     let (low, high) = (variable.low, variable.high);
     let even = (0..=EVENLY_SPACED).map(|i| {

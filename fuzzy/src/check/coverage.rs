@@ -5,7 +5,7 @@ use alloc::{string::String, vec::Vec};
 use super::logic::{Cells, Changes, Extent, Level, Logic, halves};
 use crate::model::{Model, Variable};
 
-/// A box of the input space in which no rule of an output reaches a firing strength.
+/// A box of the input space in which no rule of an output reaches the required firing strength.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -59,12 +59,11 @@ pub(super) struct Boxes {
     pub(super) complete: bool,
 }
 
-/// The maximum number of boxes; the search stops there, because authors do not read more.
+/// The maximum number of boxes. The search stops there, because no author reads more of them.
 const MOST_BOXES: usize = 50;
 /// The maximum number of missing antecedents listed for a box.
 const MOST_MISSING: usize = 16;
-/// The maximum number of sides for which antecedents are listed; a rule with more conditions would be too long to
-/// write.
+/// The maximum number of sides for which antecedents are listed. A rule for more sides would be too long to write.
 const MOST_SIDES_OF_A_RULE: usize = 6;
 /// The maximum number of formula evaluations in the search for one output.
 const MOST_LOOKS: usize = 100_000;

@@ -1,5 +1,5 @@
-//! Parts of a rule set that have no effect or no value: terms that are nearly constant, `clamp` of a centroid, a term
-//! after `any`, formulas without a finite value.
+//! Parts of a rule set that have no effect or no value: terms that are nearly constant, `clamp` for values that never
+//! leave the range, a term after `any`, formulas without a finite value.
 
 use alloc::{format, string::String, vec::Vec};
 
@@ -17,7 +17,7 @@ const EQUAL: f64 = 0.05;
 /// The minimum share of a range on which a nearly constant degree is reported.
 const MOST: f64 = 0.98;
 
-/// The number of steps over a range.
+/// The number of steps over the range of a variable, at which degrees are computed.
 const STEPS: u32 = 200;
 
 /// If a term has its largest degree on at least this share of the range, the other terms of the input are too narrow.
@@ -101,15 +101,17 @@ impl Degrees<'_> {
         }
     }
 
-    /// Whether the degree at each value is nearly the largest one.
+    /// Returns, for each value, whether the degree is nearly the largest one.
     fn is_top(&self) -> impl Iterator<Item = bool> {
         self.at.iter().map(|degree| *degree > self.most - EQUAL)
     }
 }
 
-/// Reports the terms of an input whose degree is nearly the same on the whole range, or on nearly the whole range
-/// including values at which another term is true as well. Terms with degrees below [`EQUAL`] on the whole range are
-/// reported by the analysis of terms outside the range; the same degree everywhere is intended for a `constant`.
+/// Reports the terms of an input whose degree is nearly the same on the whole range. Also reports a term that has
+/// nearly its largest degree on nearly the whole range, if another term is fully true there too, or if only a narrow
+/// part is left for the other terms. Terms with degrees below [`EQUAL`] on the whole range are reported by the
+/// analysis of terms outside the range. A `constant` is not reported, because its author wants the same degree
+/// everywhere.
 fn constants(input: &Variable, at: &ModelPositions<'_>, found: &mut Vec<Diagnostic>) {
     let degrees: Vec<Degrees<'_>> = input
         .terms
@@ -193,8 +195,9 @@ fn rounded(degree: f64) -> f64 {
     libm::round(100.0 * degree) / 100.0
 }
 
-/// Returns where the formula of a term has no finite value although a rule that concludes the term fires, if there is such
-/// a place. The ends of the ranges, where most formulas have their poles, are tried.
+/// Returns a description of the values at which the formula of a term has no finite value although a rule that
+/// concludes the term fires; `None` if no such values were found. The ends of the ranges, where most formulas have
+/// their poles, are among the values tried.
 fn without_value(model: &Model, output: &str, term: &Term, formula: &Formula) -> Option<String> {
     const MOST_POINTS: usize = 3000;
     if !has_a_value(model, formula) {

@@ -27,7 +27,8 @@ use crate::{
 /// The maximum number of boxes that a finding lists; further boxes are only counted.
 const MOST_BOXES_TOLD: usize = 10;
 
-/// Returns the diagnostics of a report, with the spans of the model's parts, including those that the author accepts.
+/// Returns all diagnostics of a report, including those that the author accepts. `spans` contains the positions of the
+/// parts of the model.
 pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnostic> {
     let at = ModelPositions { model, spans };
     let mut found = Vec::new();

@@ -51,7 +51,7 @@ impl Level {
 /// The sets of values that an analysis considers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Extent {
-    /// Intervals only: single values have no share of a range.
+    /// Intervals only. Single values are ignored, because they have no width.
     Intervals,
     /// Intervals and single values.
     Points,
@@ -213,7 +213,7 @@ impl Logic {
         all
     }
 
-    /// Returns whether a formula is true in some cell; also true if the search takes too long.
+    /// Returns whether a formula is true in some cell. Also returns true if the search takes too long.
     pub(super) fn holds_somewhere(&self, formula: &Formula) -> bool {
         const MOST_LOOKS: usize = 2_000;
         let mut left = vec![self.everywhere()];

@@ -77,7 +77,8 @@ impl Default for Options {
     }
 }
 
-/// The results of the analysis. Rules are indices in the model; serialised, rules are numbered from 1.
+/// The results of the analysis. Rules are identified by their index in the model; in serialised results, by the rule
+/// number, which counts from 1.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

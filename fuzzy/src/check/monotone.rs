@@ -45,7 +45,8 @@ impl Direction {
 }
 
 impl Monotone {
-    /// A claim about every output, from the name of an input (`heat`), or about one output (`heat:speed`).
+    /// Creates a claim from its text: the name of an input (`heat`) for a claim about every output, or the names of an
+    /// input and an output (`heat:speed`).
     #[must_use]
     pub fn new(claim: &str, direction: Direction) -> Monotone {
         let (input, output) = match claim.split_once(':') {

@@ -195,8 +195,8 @@ fn listed(variable: &Variable, numbers: &[f64], write: impl Fn(f64) -> String) -
     format!("{{{}}}", terms.join(", "))
 }
 
-/// Returns a range in which each of the terms on its own yields its peak; `None` if no range up to three times as wide
-/// does.
+/// Returns a range of the output with which each of these terms, if it is the only active one, yields its peak; `None`
+/// if no range up to three times as wide does.
 fn widened(model: &Model, output: &Output, unreached: &[UnreachedTerm]) -> Option<[f64; 2]> {
     let [low, high] = [output.variable.low, output.variable.high];
     let mut range = [low, high];

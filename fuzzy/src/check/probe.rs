@@ -151,7 +151,8 @@ impl<'m> Probe<'m> {
         (0..most).map(|_| point()).collect()
     }
 
-    /// Returns lines along an input through points of the other inputs, with the values of the outputs along them.
+    /// Returns lines parallel to the axis of an input, at several points of the other inputs, with the values of the
+    /// outputs along them.
     pub(super) fn lines(&mut self, input: usize) -> Vec<Line> {
         let along = self.values.get(input).cloned().unwrap_or_default();
         let count = (self.evaluations / (2 * along.len().max(1))).clamp(2, 400);
@@ -224,7 +225,7 @@ fn chosen(input: &Variable, most: usize) -> Vec<f64> {
     values
 }
 
-/// Selects `most` of the values at equal distances of their indices.
+/// Selects `most` of the values, with evenly spaced indices.
 fn thin(values: &[f64], most: usize) -> Vec<f64> {
     let count = values.len();
     if count <= most {

@@ -355,7 +355,7 @@ fn jumps_are_found_at_their_positions() {
     );
 }
 
-/// `mid` is an output that the rules of `z` read; its values stay inside its range.
+/// The rules of `z` read the output `mid`, whose values cover only a part of its range.
 #[test]
 fn an_output_that_is_read_counts_as_an_input_over_its_range() {
     let outputs = "outputs: {z: {range: [0, 1], partition: [low, medium, high]}, \
@@ -413,7 +413,7 @@ fn an_output_that_is_read_counts_as_an_input_over_its_range() {
     assert!(check(&engine, &options).is_err());
 }
 
-/// Rules of a chain keep their numbers.
+/// A rule of a later stage is reported by its index in the whole model, not by its index in the stage.
 #[test]
 fn rules_of_a_later_stage_are_reported_by_their_numbers() {
     let text = format!(

@@ -109,7 +109,8 @@ pub(super) fn levels(implication: Implication, strength: f64) -> [Option<f64>; 2
     }
 }
 
-/// Returns an implication that gives the same degrees between two levels, where the activated term is not constant.
+/// Returns an implication without steps that gives the same degrees between two levels, where the activated term is
+/// not constant.
 pub(super) fn between_levels(implication: Implication) -> Implication {
     match implication {
         Implication::Drastic | Implication::NilpotentMinimum => Implication::Minimum,
@@ -163,10 +164,10 @@ impl Kinks {
     }
 }
 
-/// An aggregation between its kinks and steps.
+/// The properties of an aggregation between its kinks and steps.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Smooth {
-    /// The aggregation that gives the same degrees, except beyond a step, where the degree is 1.
+    /// An aggregation that gives the same degrees there, except beyond a step, where the degree is 1.
     pub(super) aggregation: Aggregation,
     /// Whether there are steps to 1.
     pub(super) has_steps: bool,

@@ -18,7 +18,7 @@
 use crate::model::TypeReduction;
 use crate::table::operators::{larger, smaller};
 
-/// A summary of a set or of weighted numbers.
+/// A summary of an interval type-2 set or of weighted numbers.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Summary {
     /// The area and the centroid of the lower set; `None` if it is empty.
@@ -29,9 +29,10 @@ pub(super) struct Summary {
     pub(super) support: (f64, f64),
 }
 
-/// Returns the ends of the interval of a method; both are equal for methods that give a number. Without a lower set, it is
-/// the centroid of the upper set, or the support for a method that gives an interval. `None` for the exact interval,
-/// which does not follow from the summary.
+/// Returns the ends of the interval that a method of type reduction computes. Both ends are equal for methods that
+/// compute a single number. If there is no lower set, such a method returns the centroid of the upper set, and a
+/// method that computes an interval returns the support. `None` for the exact interval, which does not follow from the
+/// summary.
 pub(super) fn closed(method: TypeReduction, summary: Summary) -> Option<(f64, f64)> {
     let Summary {
         lower,

@@ -333,8 +333,8 @@ impl Curves {
         self.joined_at(parts, aggregation, x, x)
     }
 
-    /// Returns the degree at the end `x` of a piece. Lines use their degree at the end; curves are evaluated just
-    /// `inside`.
+    /// Returns the degree at the end `x` of a piece. Lines are evaluated at `x`, curves at `inside`, a position just
+    /// inside the piece.
     fn joined_at(
         &self,
         parts: &[ActivatedTerm],
@@ -383,7 +383,8 @@ impl Curves {
         self.terms.get(term).map_or(0.0, |term| term.membership(x))
     }
 
-    /// Returns whether a minimum cuts a term off. A strength that equals its maximum degree up to rounding does not.
+    /// Returns whether the minimum with `strength` cuts a term off. It does not if `strength` equals the maximum
+    /// degree of the term up to rounding.
     fn cuts_off(&self, term: usize, strength: f64) -> bool {
         let highest = self.highest.get(term);
         self.has_formula || highest.is_none_or(|highest| strength < highest * (1.0 - EQUAL))

@@ -18,10 +18,10 @@ use crate::table::{
 /// The number of halvings of the search for a bisector.
 const HALVINGS: usize = 60;
 
-/// The relative difference up to which degrees count as equally high; larger than that of the maxima.
+/// The relative difference up to which degrees count as equally high. It is larger than the one in `maxima`.
 const EQUAL: f64 = 1e-9;
 
-/// The enclosure of the values of an output.
+/// The method that computes an enclosure of the values of an output.
 #[derive(Debug, Clone)]
 pub(crate) struct EnclosureMethod {
     method: Method,
@@ -42,7 +42,7 @@ enum Method {
     Tsukamoto(Vec<Term>),
 }
 
-/// An interval of values. It `is_certain` if all firing strengths between the bounds give a value.
+/// An interval of values. `is_certain` is true if all firing strengths between the bounds give a value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ValueEnclosure {
     pub(crate) low: f64,
@@ -88,7 +88,7 @@ impl EnclosureMethod {
     }
 
     /// Returns an interval that contains the values for all firing strengths between `lower` and `upper`; `None` if no
-    /// rule fires. `number` returns the ends of the numbers of a term of a Takagi-Sugeno output.
+    /// rule fires. `number` returns the bounds of the number that a term of a Takagi-Sugeno output yields.
     pub(crate) fn interval(
         &self,
         lower: Strengths<'_>,
@@ -181,7 +181,7 @@ const EMPTY: Strengths<'static> = Strengths {
     offsets: &[],
 };
 
-/// The ends of a number, and the bounds of its weight.
+/// The bounds of a number, and the bounds of its weight.
 type Number = ((f64, f64), (f64, f64));
 
 /// Returns the bounds of the weighted averages or sums of numbers. Neither bound decreases when a number increases.

@@ -86,7 +86,7 @@ impl IntegratedSet {
         Some(larger(self.low, smaller(self.high, value)))
     }
 
-    /// Returns the value of a set, whose pieces `pieces` visits from left to right.
+    /// Returns the value of a set; `pieces` visits the pieces of the set from left to right.
     fn exact(
         &self,
         pieces: impl Fn(&mut Workspace, &mut dyn FnMut(&Piece<'_>)),

@@ -12,8 +12,8 @@ pub(crate) struct PreparedLayers {
     pub(crate) layers: Vec<Layers>,
 }
 
-/// The maximum number of parts of an output. The number of bases has the same limit, because each base takes a number
-/// per row.
+/// The maximum number of parts of an output. The number of bases has the same limit, because each base takes memory
+/// for one number per row.
 const MOST_PARTS: usize = 1024;
 /// The minimum difference of degrees; for smaller ones the coefficients would overflow.
 const LEAST_DIFFERENCE: f64 = 1e-100;
@@ -66,8 +66,8 @@ impl PreparedLayers {
     }
 }
 
-/// Returns the parts of all terms: those of the sections, merged if nothing changes between them. `None` if there are
-/// too many.
+/// Returns the parts of all terms: the strands of all sections, where a strand is merged with its continuation on the
+/// next section if the same terms are above both. `None` if there are too many.
 fn parts(prepared: &PreparedSet) -> Option<Vec<LayerSegment>> {
     let mut parts: Vec<LayerSegment> = Vec::new();
     for section in &prepared.sections {

@@ -121,8 +121,8 @@ impl Maxima {
     }
 }
 
-/// Calls `visit` for each maximum inside a curve, with its degree. Returns whether the curve rises at its start and
-/// towards its end; `None` for a straight piece.
+/// Calls `visit` for each maximum inside a curve, with its degree. Returns whether the curve rises at its start, and
+/// whether it rises at its end; `None` for a straight piece.
 fn peaks(piece: &Piece<'_>, visit: &mut dyn FnMut(f64, f64)) -> Option<(bool, bool)> {
     let curve = piece.curve?;
     Some(turns(curve.slope, &mut |part| {
@@ -140,7 +140,7 @@ const STRETCHES: u32 = 32;
 pub(super) const INSIDE: f64 = 1e-12;
 
 /// Calls `visit` for each position in [0, 1] at which a function has a maximum, that is, its slope falls through 0.
-/// Returns whether it rises at 0 and towards 1.
+/// Returns whether the function rises at 0, and whether it rises at 1.
 pub(super) fn turns(slope: &dyn Fn(f64) -> f64, visit: &mut dyn FnMut(f64)) -> (bool, bool) {
     let mut from = INSIDE;
     let first = slope(from);

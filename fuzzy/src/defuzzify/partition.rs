@@ -113,7 +113,8 @@ impl Partition {
         &self.ranks
     }
 
-    /// Returns the number of firing strengths that are read. The last ones are always 0.
+    /// Returns the number of firing strengths that an evaluation reads: one per term of the pairs, and one more to the
+    /// right of the last term. Those that belong to no term of the output are always 0.
     pub(crate) fn strengths(&self) -> usize {
         2 * self.pairs.len() + 1
     }

@@ -159,8 +159,8 @@ impl Piece<'_> {
 
 /// The maximum number of successive halvings of an interval.
 const DEEPEST: usize = 48;
-/// The maximum number of all halvings of a piece. They suffice to locate several missed kinks; the limit ends the search
-/// if rounding prevents agreement of the halves.
+/// The maximum total number of halvings of a piece. This suffices to locate several missed kinks; the limit ends the
+/// search if rounding prevents agreement of the halves.
 const MOST_HALVINGS: usize = 400;
 
 /// The relative difference up to which an interval and its halves agree. The result is then accurate to rounding where

@@ -27,8 +27,9 @@ use super::{ConsequentOperators, Strengths};
 use crate::model::{Defuzzifier, Output, Term, TypeReduction, type2::Bound};
 use crate::table::operators::{larger, smaller};
 
-/// The maximum number of steps of the search for an end. A few are enough, unless the lower set is almost empty. Then a
-/// step leaves up to two thirds of the distance to the end, so that the rest is far below rounding.
+/// The maximum number of steps of the search for an end. A few are enough, unless the lower set is almost empty. In
+/// that case each step may reduce the distance to the end by only a third, but after this many steps the rest is far
+/// below rounding.
 const MOST_STEPS: usize = 250;
 
 /// The type reduction of an output.
@@ -430,8 +431,8 @@ mod tests {
         assert_eq!(average(&points(&[(4.0, 0.0, 0.0)])), None);
     }
 
-    /// The uncertainty bounds of the left end as Wu and Mendel print them, for rules in ascending order: the bound below
-    /// and the bound above it.
+    /// Returns the uncertainty bounds of the left end, first the lower and then the upper one, as printed by Wu and
+    /// Mendel. The rules must be in ascending order.
     fn wu_mendel_left(points: &[WeightedNumber]) -> (f64, f64) {
         let sum = |f: &dyn Fn(&WeightedNumber) -> f64| points.iter().map(f).sum::<f64>();
         let (lower, upper) = (sum(&|p| p.lower), sum(&|p| p.upper));

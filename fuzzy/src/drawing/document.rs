@@ -13,7 +13,7 @@ use super::{
 pub struct SvgDocument {
     width: f64,
     height: f64,
-    /// Additional room above the upper edge, for headings with more than one line.
+    /// Additional height above the upper edge, for headings with more than one line.
     above: f64,
     style: String,
     body: String,
@@ -117,7 +117,7 @@ impl SvgDocument {
         SvgDocument::styled(width, height, STYLE)
     }
 
-    /// Creates an empty document with custom styles. `rect.paper` is its background.
+    /// Creates an empty document with custom styles. The style `rect.paper` is that of the background.
     pub fn styled(width: f64, height: f64, style: impl Into<String>) -> SvgDocument {
         SvgDocument {
             width,
@@ -300,7 +300,7 @@ impl SvgDocument {
         self.text((x, bar.top - 8.0), anchor, "label", &title);
     }
 
-    /// Adds the meaning of hatched and grey cells below a map.
+    /// Adds an explanation of hatched and grey cells below a map.
     pub(super) fn notes(&mut self, slice: &Slice) {
         let swatch = Frame {
             left: Frame::MAP.left,

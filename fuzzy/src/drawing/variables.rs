@@ -17,8 +17,8 @@ const FRAME: f64 = 110.0;
 /// The height of a frame including its labels.
 const BLOCK: f64 = 176.0;
 
-/// Returns an SVG of the terms of every input and output of a model. Below it, `curves` are drawn: the outputs of a
-/// model with a single input.
+/// Returns an SVG of the terms of every input and output of a model. The `curves`, which are the outputs of a model
+/// with a single input, are drawn below the terms.
 pub fn variables_svg(model: &Model, curves: &[Slice]) -> String {
     drawn(model, None, curves)
 }
@@ -88,7 +88,8 @@ fn drawn(model: &Model, before: Option<&Model>, curves: &[Slice]) -> String {
     document.finish(&format!("{}: its variables and their terms", model.name))
 }
 
-/// Returns the terms of a Takagi-Sugeno output. A linear function has no stick, only its formula.
+/// Returns the terms of a Takagi-Sugeno output. Linear functions and formulas have the weight 0, so that only their
+/// text is drawn.
 fn numbers(output: &Output) -> Vec<Number> {
     let terms = output.variable.terms.iter().enumerate();
     let numbers = terms.filter_map(|(i, term)| {

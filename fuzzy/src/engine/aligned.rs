@@ -3,8 +3,8 @@
 use alloc::{vec, vec::Vec};
 use core::ops::{Deref, DerefMut};
 
-/// Several numbers for each of `L` rows. If `L` is larger than 1, they start at a cache line, because accessing a vector
-/// that spans two lines takes twice as long.
+/// Several numbers for each of `L` rows. If `L` is larger than 1, they start at the beginning of a cache line, because
+/// accessing a vector that spans two cache lines takes twice as long.
 #[derive(Debug, Clone)]
 pub(super) struct AlignedRows<const L: usize> {
     numbers: Vec<f64>,

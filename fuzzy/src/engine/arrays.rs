@@ -47,7 +47,7 @@ macro_rules! define {
                 $(self.$array.extend_from_slice(&other.$array);)*
             }
 
-            /// Returns the lengths of its arrays.
+            /// Returns the lengths of the arrays.
             pub(super) fn ends(&self) -> Ends {
                 Ends {
                     $($array: self.$array.len() as u32,)*

@@ -187,7 +187,7 @@ impl Engine {
         Ok(rows)
     }
 
-    /// Returns the common length of the columns, one per input.
+    /// Returns the common length of the columns. There must be one column per input.
     fn rows_of(&self, columns: &[&[f64]]) -> Result<usize, EvaluateError> {
         if columns.len() != self.inputs.len() {
             return Err(EvaluateError::WrongNumberOfInputs {

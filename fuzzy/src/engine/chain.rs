@@ -10,7 +10,7 @@ use crate::table;
 /// The stages of a model with chains, and the outputs that connect them.
 #[derive(Debug, Clone)]
 pub(super) struct Chain {
-    /// The position of the first stage in the model.
+    /// The indices of the first stage in the model.
     first: OwnedStageIndices,
     later: Vec<LaterStage>,
     /// The same stages as plain arrays. This field and the next two contain the fields of a [`table::Chain`].
@@ -26,10 +26,11 @@ pub(super) struct LaterStage {
     pub(super) stage: Stage,
 }
 
-/// The relation of a stage to the whole model.
+/// The indices in the model of the outputs and rules of a stage.
 #[derive(Debug, Clone)]
 struct OwnedStageIndices {
-    /// The outputs that the stage reads. Their values follow those of the inputs.
+    /// The index in the model of each output that the stage reads. The values of these outputs follow those of the
+    /// inputs.
     reads: Vec<u32>,
     /// The index in the model of each output of the stage.
     outputs: Vec<u32>,
@@ -151,8 +152,8 @@ impl Engine {
     }
 
     /// Returns the compiled arrays of a model in which an output [reads](crate::Model::reads) another one, to evaluate
-    /// them without this engine or to write them to a file. `None` for any other model, which is a
-    /// [`table`](Engine::table), and for a model with [type-2 terms](crate::Model::has_type2_terms).
+    /// them without this engine or to write them to a file. `None` for any other model (use [`table`](Engine::table)),
+    /// and for a model with [type-2 terms](crate::Model::has_type2_terms).
     pub fn chain(&self) -> Option<table::Chain<'_>> {
         let chain = self.chain.as_deref()?;
         if self.model.has_type2_terms() {

@@ -401,7 +401,7 @@ struct ActiveConsequent<'m> {
     term: &'m Term,
     strength: f64,
     lower: Option<f64>,
-    /// Its contribution to the result, accumulated so far.
+    /// The contribution of the consequent to the result, accumulated so far.
     part: f64,
 }
 

@@ -40,7 +40,7 @@ pub struct ExplainedInput {
 pub struct Degree {
     /// The name of the term.
     pub term: String,
-    /// The degree, in [0, 1]; of an interval type-2 term the upper one.
+    /// The degree, in [0, 1]; for an interval type-2 term, the upper degree.
     pub degree: f64,
     /// The lower degree of an interval type-2 term; absent for any other term.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]

@@ -125,7 +125,8 @@ struct CompiledOutput {
     when_no_rule_fires: NoRuleFires,
     /// The range of the output's firing strengths.
     strengths: Range<usize>,
-    /// The offset, within that range, of each term's firing strengths, followed by the end of the last term's.
+    /// The offset of each term's firing strengths within `strengths`, followed by the end of the last term's firing
+    /// strengths.
     offsets: Vec<usize>,
     /// Whether values outside the output's range are clamped to it.
     clamps: bool,

@@ -102,8 +102,8 @@ fn are_few(drafts: &[IndexedRule]) -> bool {
     steps <= MOST_STEPS_OF_FEW_RULES
 }
 
-/// Returns whether a batch may evaluate all rules, each for several rows together. It may not if a firing strength is a
-/// sum of more than two numbers, because their order would differ from that of a single evaluation.
+/// Returns whether a batch may evaluate all rules, each for several rows together. It may not if a firing strength is
+/// a sum of more than two numbers, because the numbers would be added in another order than in a single evaluation.
 pub(super) fn may_be_programs(drafts: &[IndexedRule]) -> bool {
     let actions = || drafts.iter().flat_map(|draft| &draft.actions);
     let keeps_its_bits = |action: &Action| {

@@ -18,7 +18,7 @@ pub struct Change {
     pub input: String,
     /// The value of the input at which the change takes effect.
     pub at: f64,
-    /// The difference between that value and the current one; negative if it is below.
+    /// The value `at` minus the current value of the input.
     pub by: f64,
     /// Whether the input decreases. Not serialised.
     #[cfg_attr(feature = "serde", serde(skip))]

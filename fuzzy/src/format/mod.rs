@@ -96,7 +96,7 @@ fn read_lacking(
     }
 }
 
-/// The readable part of a rule set, for editors.
+/// The part of a rule set that could be parsed, for editors.
 #[doc(hidden)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct PartialModel {

@@ -17,7 +17,7 @@ use crate::{
 
 pub(super) const KEYS: [&str; 5] = ["rule", "confidence", "support", "against", "note"];
 
-/// Reads the rules of a list, which follow those of the model.
+/// Reads the rules of a list. Their numbers continue those of the rules in `model`.
 pub(super) fn read(
     node: &Node,
     model: &Model,

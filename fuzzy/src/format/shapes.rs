@@ -102,7 +102,7 @@ pub(super) fn read(
     }
 }
 
-/// Returns a suggestion for the words of other programs for the two membership functions of a type-2 term.
+/// Returns a suggestion if the keys of the two membership functions of a type-2 term are words of another program.
 fn upper_and_lower(fields: &Fields<'_>) -> Option<String> {
     let entries = fields.entries().iter();
     let pairs = entries.filter_map(|entry| {

@@ -123,8 +123,9 @@ fn number(value: &Node) -> &Node {
     }
 }
 
-/// Reports limits that are not in the order of the text, of which the last term has none: they may be understood as
-/// beginnings. Trees of formats that sort keys have no positions, and are not examined.
+/// Reports a term without a limit that is not the last one, a first limit that is not above the low end of the range,
+/// and limits that decrease in the order of the text. In the first two cases, the author probably wrote where each
+/// term begins instead of where it ends. Trees of formats that sort keys have no positions, and are not examined.
 fn order(
     what: &str,
     node: &Node,
@@ -179,7 +180,8 @@ fn order(
     }
 }
 
-/// Returns a suggestion for limits that are beginnings: each is the end of the term before it.
+/// Returns a suggestion for numbers that are the beginnings of terms: each number becomes the limit of the term before
+/// it.
 fn in_order(steps: &[(Entry<'_>, Option<f64>)]) -> String {
     let names = steps.iter().map(|(entry, _)| entry.key);
     let limits: Vec<f64> = steps.iter().filter_map(|(_, limit)| *limit).collect();

@@ -91,7 +91,7 @@ enum FormulaMistakeKind<'a> {
     Operand,
     /// An operator or the end was expected.
     Operator,
-    /// A second comparison.
+    /// A second comparison in a row, as in `a < b < c`.
     Chain,
     /// An unknown function, by its name.
     Function(&'a str),

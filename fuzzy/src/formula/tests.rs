@@ -237,7 +237,7 @@ proptest! {
     }
 }
 
-/// Runs in a thread whose stack is as small as that of some hosts.
+/// Runs a function in a thread whose stack is as small as on some hosts.
 fn in_a_small_thread(run: impl FnOnce() + Send + 'static) {
     let thread = std::thread::Builder::new().stack_size(256 << 10);
     thread.spawn(run).unwrap().join().unwrap();

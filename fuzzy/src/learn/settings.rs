@@ -98,9 +98,9 @@ pub struct Settings {
     /// of steps between terms; among equally near antecedents the one with the highest output is used. A note of the
     /// rule states this.
     pub complete: bool,
-    /// The inputs in which the consequents are made monotone, by pooling neighbouring antecedents that violate the
-    /// direction. Rules that the model already contains are not changed, and inference may yield an output that is not
-    /// monotone in spite of monotone rules; `check::counterexamples` verifies the output.
+    /// The inputs along which the consequents are made monotone, each with the direction. Neighbouring antecedents
+    /// that violate it are pooled. Rules that the model already contains are not changed. The output may still not be
+    /// monotone even if all rules are; `check::counterexamples` verifies the output.
     pub monotone: Vec<(String, Direction)>,
 }
 
@@ -173,7 +173,7 @@ impl core::fmt::Display for LearnError {
 impl core::error::Error for LearnError {}
 
 impl LearnError {
-    /// Returns a suggestion how to fix the error.
+    /// Returns a suggestion for how to fix the error.
     #[must_use]
     pub fn help(&self) -> &'static str {
         match self {

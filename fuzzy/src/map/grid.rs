@@ -6,7 +6,7 @@ use crate::Engine;
 
 /// Equidistant points over some inputs of an engine; the other inputs are fixed.
 ///
-/// The index of a cell changes fastest along the last axis.
+/// Neighbouring cells along the last axis have consecutive indices.
 ///
 /// # Example: a slice of a model with three inputs
 /// ```

@@ -156,7 +156,7 @@ impl Variable {
         }
     }
 
-    /// Sets the unit of its values.
+    /// Sets the unit of the values.
     #[must_use]
     pub fn unit(mut self, unit: impl Into<String>) -> Self {
         self.unit = Some(unit.into());

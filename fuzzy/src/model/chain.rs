@@ -121,8 +121,8 @@ impl Model {
         inputs.chain(output.map(|output| &output.variable))
     }
 
-    /// Returns the inputs that an output depends on: those that its rules, linear functions and formulas read, and
-    /// those of the outputs that it reads. All other inputs change neither its value nor its coverage.
+    /// Returns the inputs that an output depends on: those that its rules, linear functions and formulas read, and the
+    /// inputs on which the outputs that it reads depend. All other inputs change neither its value nor its coverage.
     ///
     /// # Example: an alarm that is independent of the speed of a fan
     /// ```

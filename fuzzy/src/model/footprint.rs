@@ -13,14 +13,14 @@ pub(crate) enum NoFootprint {
     /// Footprints of this kind of membership function are not supported.
     Unsupported(String),
     /// The distance is so large that the lower membership function would be 0 everywhere, or would have another form.
-    /// The field is the limit, below which distances must be.
+    /// The field is the limit; the distance must be below it.
     TooLarge(f64),
 }
 
-/// Moves a valid membership function to the left and to the right by up to a distance: the upper membership function is
-/// the maximum of all these copies, the lower one their minimum.
+/// Moves a valid membership function to the left and to the right by up to `by`: the upper membership function is the
+/// maximum of all these copies, the lower one their minimum.
 ///
-/// A position at a vertical edge at or beyond an end of the `range` does not move, because no value is beyond it.
+/// A vertical edge at or beyond an end of the `range` does not move, because the range has no values beyond the edge.
 /// `variable` is the name of the variable, for a formula.
 pub(crate) fn blurred(
     function: &MembershipFunction,
@@ -116,7 +116,8 @@ pub(crate) fn blurred(
     }
 }
 
-/// Moves the corners of a trapezoid. Where the flanks of the lower one cross, it is a triangle of a smaller height.
+/// Moves the corners of a trapezoid. If the flanks of the lower trapezoid would cross, the lower membership function
+/// is a triangle of smaller height.
 fn straight(corners: [f64; 4], by: f64, (low, high): (f64, f64)) -> Result<Footprint, NoFootprint> {
     use MembershipFunction as F;
     let [left, left_top, right_top, right] = corners;
@@ -209,9 +210,9 @@ fn bracketed(number: f64) -> String {
     }
 }
 
-/// Returns the lower membership function that is scaled by `scale`, and starts to rise where the upper one, which is a
-/// valid membership function, has the degree `left` on its left flank, and `right` on its right flank. This is the
-/// lower membership function of MATLAB's `fismftype2`.
+/// Returns the lower membership function of MATLAB's `fismftype2` for a valid upper one. It is scaled by `scale`. Its
+/// left flank starts to rise where the upper membership function has the degree `left_lag`, and its right flank ends
+/// where the upper one has the degree `right_lag`.
 pub(crate) fn lagging(
     function: &MembershipFunction,
     scale: f64,
@@ -444,7 +445,8 @@ mod tests {
     }
 
     proptest! {
-        /// The footprint is the range of the degrees of all values within the distance.
+        /// At each value, a blurred term spans the degrees that the original term has at all values within the
+        /// distance `by`.
         #[test]
         fn blurred_degrees_are_those_of_near_values(function in any_function(), by in 0.0..8.0f64, x in 0.0..40.0f64) {
             let Ok((upper, lower)) = blurred(&function, by, (-10.0, 50.0), "x") else {

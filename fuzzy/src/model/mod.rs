@@ -106,7 +106,7 @@ pub struct Variable {
 pub struct Term {
     /// The name used in rules.
     pub name: String,
-    /// The membership function; of an interval type-2 term the upper one.
+    /// The membership function; for an interval type-2 term, the upper one.
     pub membership_function: MembershipFunction,
     /// The height of the membership function, in (0, 1]; 1 by default.
     pub height: f64,

@@ -145,7 +145,8 @@ impl Variable {
 }
 
 impl Model {
-    /// Returns whether a term of an input or output has a lower membership function: an interval type-2 rule set.
+    /// Returns whether a term of an input or output has a lower membership function, which makes this an interval
+    /// type-2 rule set.
     #[must_use]
     pub fn has_type2_terms(&self) -> bool {
         self.variables().any(Variable::has_type2_terms)
@@ -169,8 +170,9 @@ impl Model {
         found
     }
 
-    /// Returns whether the value of an output is the middle of an interval: it has type-2 terms, or one of its rules
-    /// reads them. An output that reads another output uses only its value, so this does not make it an interval.
+    /// Returns whether the value of an output is the middle of an interval: the output has type-2 terms, or one of its
+    /// rules reads such terms. If the output reads another output whose value is the middle of an interval, it uses
+    /// only that value.
     #[must_use]
     pub fn has_interval(&self, output: &Output) -> bool {
         let mut rules = self.rules.iter();

@@ -119,7 +119,7 @@ impl Rule {
 }
 
 impl Consequent {
-    /// Returns the firing strength, given the degree of the antecedent times the weight.
+    /// Applies the hedges of the consequent to `strength`, the degree of the antecedent times the weight.
     pub(crate) fn hedged(&self, strength: f64) -> f64 {
         let hedges = self.hedges.iter().rev();
         hedges.fold(strength, |strength, hedge| hedge.of(strength))

@@ -56,7 +56,7 @@ pub fn parse(text: &str) -> Result<Rule, Box<Diagnostic>> {
 }
 
 /// Parses a rule, and also returns the position of its weight: the number after WITH, or the empty range after the
-/// conclusion. `owner` returns the input that has a term, for suggestions.
+/// conclusion. `owner` returns the input or output that has a term, for suggestions.
 pub(crate) fn parse_with_weight(
     text: &str,
     owner: Owner<'_>,
@@ -100,7 +100,7 @@ pub(super) fn word(rest: &str) -> ParseResult<'_, &str> {
     take_while(is_name_letter).parse(rest)
 }
 
-/// Parses a keyword if it is the next word; a keyword ends at the end of the word.
+/// Parses a keyword if it is the whole next word.
 pub(super) fn keyword<'a>(rest: &'a str, expected: &str) -> Option<&'a str> {
     let (after, word) = word(rest).ok()?;
     word.eq_ignore_ascii_case(expected).then_some(after)
@@ -305,8 +305,8 @@ fn one_or(mut parts: Vec<Condition>, join: fn(Vec<Condition>) -> Condition) -> C
     }
 }
 
-/// Returns whether the word after a term can only be a part of its name: it is not a keyword, not a misspelt one, and
-/// not the input of another proposition.
+/// Returns whether the word after a term can only be a part of its name: it is neither a keyword nor a misspelt
+/// keyword, and not the input of another proposition.
 fn is_second_word(after: &str, next: &str) -> bool {
     is_plain_name(next)
         && nearest(next, ["AND", "OR", "THEN"]).is_none()

@@ -10,9 +10,9 @@ use super::MembershipFunction;
 use super::ShapeKind;
 
 impl ShapeKind {
-    /// Returns the value at which a monotone membership function has a degree in [0, 1], that is, the inverse of its
-    /// formula. On a plateau, this is the end of the slope. A sigmoid reaches 0 and 1, and a concave shape reaches 0,
-    /// only at infinity. NaN for shapes that are not monotone.
+    /// Returns the value at which a monotone membership function takes the given degree in [0, 1], that is, the
+    /// inverse of its formula. On a plateau, this is the end of the slope. A sigmoid reaches 0 and 1, and a concave
+    /// shape reaches 0, only at infinity. NaN for shapes that are not monotone.
     pub(crate) fn place(self, parameters: &[f64; 4], points: &[[f64; 2]], degree: f64) -> f64 {
         let [a, b, ..] = *parameters;
         let along = |foot: f64, top: f64, part: f64| foot + (top - foot) * part;
@@ -33,7 +33,7 @@ impl ShapeKind {
 
 #[cfg(feature = "alloc")]
 impl MembershipFunction {
-    /// Returns the value at which a monotone membership function has a degree: see [`ShapeKind::place`].
+    /// Returns the value at which a monotone membership function takes the given degree: see [`ShapeKind::place`].
     pub(crate) fn place(&self, degree: f64) -> f64 {
         let (kind, parameters) = self.kind();
         match self {
@@ -59,7 +59,8 @@ impl MembershipFunction {
     }
 }
 
-/// Returns the value at which two parabolas, from 0 at `foot` to 1 at `top`, have a degree. `top` may be below `foot`.
+/// Returns the value at which two parabolas, from 0 at `foot` to 1 at `top`, take the given degree. `top` may be below
+/// `foot`.
 fn smooth(foot: f64, top: f64, degree: f64) -> f64 {
     let width = top - foot;
     if degree <= 0.5 {
@@ -69,9 +70,9 @@ fn smooth(foot: f64, top: f64, degree: f64) -> f64 {
     }
 }
 
-/// Returns the value at which a piecewise linear function has a degree. The degrees of its points must only rise or
-/// only fall. If several values have the degree, the result is the first one in the direction in which the degrees
-/// rise. A degree below all of them gives the start of the slope, a degree above all of them its end.
+/// Returns the value at which a piecewise linear function takes the given degree. The degrees of its points must only
+/// rise or only fall. If several values have this degree, the result is the first one in the direction in which the
+/// degrees rise. A degree below all of them gives the start of the slope, a degree above all of them its end.
 fn piecewise(points: &[[f64; 2]], degree: f64) -> f64 {
     match (points.first(), points.last()) {
         (Some([_, first]), Some([_, last])) if first > last => {

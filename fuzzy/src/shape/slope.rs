@@ -15,8 +15,9 @@ use super::{
 const SHARE: f64 = 0.125;
 
 impl MembershipFunction {
-    /// Returns the derivative of the degree at `x`; at a kink, that of either side. `width` is the width of an interval
-    /// around `x` without kinks. The slope of a formula is computed as a difference over a fraction of it.
+    /// Returns the derivative of the degree at `x`; at a kink, the derivative on one of the two sides. `width` is the
+    /// width of an interval around `x` without kinks. The slope of a formula is computed as a difference over a
+    /// fraction of this interval.
     pub(crate) fn slope(&self, x: f64, width: f64) -> f64 {
         match *self {
             MembershipFunction::Triangle { left, peak, right } => {

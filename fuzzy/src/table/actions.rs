@@ -89,7 +89,7 @@ pub(super) struct FiringStrengths<'m, const L: usize> {
     least: f64,
     strengths: &'m mut [[f64; L]],
     strongest: &'m mut [StrongestRule<L>],
-    /// The [number](number_of) of the program that has fired and comes last in the model.
+    /// The [number](number_of) of the program that comes last in the model among those that have fired.
     latest: f64,
 }
 

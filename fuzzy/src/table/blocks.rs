@@ -114,7 +114,7 @@ impl Block {
     }
 }
 
-/// Applies the hedges of its consequents to the strength of a rule, and passes the rule to `firing`.
+/// Applies the hedges of a rule's consequents to the strength of the rule, and passes the rule to `firing`.
 #[inline(always)]
 fn act<A: Arrays>(
     table: &A,

@@ -91,10 +91,11 @@ impl Conjunctions {
     }
 }
 
-/// The relation of a stage to the whole rule set.
+/// The indices in the model of the outputs and rules of a stage.
 #[derive(Debug, Clone, Copy)]
 pub struct StageIndices<'a> {
-    /// The outputs that the stage reads. Their values follow those of the inputs.
+    /// The index in the model of each output that the stage reads. The values of these outputs follow those of the
+    /// inputs.
     pub reads: &'a [u32],
     /// The index in the model of each output of the stage.
     pub outputs: &'a [u32],
@@ -134,7 +135,8 @@ pub enum StageRuleCriterion {
 }
 
 impl<'a> Chain<'a> {
-    /// Iterates over the tables of the stages, with the relation of each to the rule set. It ends at the first damaged stage.
+    /// Iterates over the tables of the stages, each with the indices of the stage in the model. It ends at the first
+    /// damaged stage.
     pub fn parts(self) -> impl Iterator<Item = (Table<'a>, StageIndices<'a>)> {
         let mut first = Ends::default();
         let mut places = self.places;
@@ -289,7 +291,8 @@ impl<'a> Chain<'a> {
         rules.map(|rule| *rule as usize).nth(indices)
     }
 
-    /// Returns the outputs without a closed form that other outputs read, and `risk` if it has no closed form.
+    /// Returns the outputs without a closed form that other outputs read, and the output `risk` if it has no closed
+    /// form.
     pub fn open(self, risk: usize) -> impl Iterator<Item = usize> + use<'a> {
         let is_read = move |output: u32| {
             let mut reads = self.parts().flat_map(|(_, indices)| indices.reads);

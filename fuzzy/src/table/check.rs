@@ -309,7 +309,8 @@ impl Table<'_> {
         Some((last, most + curves.len()))
     }
 
-    /// Returns whether a program never combines fewer than two degrees and never exceeds the size of the stack.
+    /// Returns whether a program has at least two degrees on the stack for each AND and OR, and never exceeds the size
+    /// of the stack.
     fn fits_stack(&self, steps: core::ops::Range<usize>) -> bool {
         let mut depth = 0usize;
         let steps = self.steps.get(steps).unwrap_or_default();

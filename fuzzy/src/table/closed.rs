@@ -307,7 +307,8 @@ fn closed_in_row<A: Arrays>(table: &A, output: &Output, strengths: &[f64]) -> Op
     }
 }
 
-/// Returns a value if it is finite, or else the end of the range on its side.
+/// Returns a value if it is finite. Otherwise returns the upper end of the range for positive infinity, and the lower
+/// end for negative infinity and NaN.
 pub(crate) fn finite(place: f64, low: f64, high: f64) -> f64 {
     if place.is_finite() {
         place
@@ -410,7 +411,7 @@ pub(crate) fn number<A: Arrays>(table: &A, consequent: &Consequent, inputs: &[[f
     }
 }
 
-/// Adds the weighted values of a consequent, and its weights.
+/// Adds the values `z` of a consequent, times their weights `strengths`, to `sums`, and the weights to `totals`.
 #[inline(always)]
 fn add<const L: usize>(
     sums: &mut [f64; L],

@@ -193,7 +193,7 @@ impl Flank {
         )
     }
 
-    /// Returns the area of a Gaussian beyond `x`, as seen from the mean.
+    /// Returns the area below a Gaussian beyond `x`, on the side away from the mean.
     pub(crate) fn beyond_of(&self, x: f64, measure: Measure) -> f64 {
         /// `sqrt(pi / 2)`.
         const HALF: f64 = 1.253_314_137_315_500_3;

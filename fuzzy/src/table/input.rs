@@ -90,7 +90,7 @@ impl Line {
     }
 }
 
-/// Computes, for each row, the degrees of those literals that can be above 0 at its value.
+/// Computes, for each row, the degrees of those literals that can be above 0 at the value of the row.
 #[inline(always)]
 pub(crate) fn degrees_in_rows<A: Arrays, const L: usize>(
     table: &A,

@@ -4,10 +4,10 @@ use alloc::{format, string::String};
 
 use crate::formula::Formula;
 
-/// Characters that look like a minus sign: hyphens, dashes and the sign of typesetting.
+/// Characters that look like a minus sign: hyphens, dashes and the typographic minus sign.
 const DASHES: [char; 5] = ['\u{2010}', '\u{2011}', '\u{2012}', '\u{2013}', '\u{2212}'];
 
-/// Units that are easily confused, and the larger one.
+/// Units that are easily confused, each with the unit that is 1000 times as large.
 const MILLI: [(&str, &str); 4] = [("ms", "s"), ("mm", "m"), ("mV", "V"), ("mA", "A")];
 
 /// Returns the share of a percentage: 0.05 for `5%`.
@@ -22,7 +22,8 @@ pub fn percentage_of_share(share: f64) -> f64 {
     libm::round(1e8 * share) / 1e6
 }
 
-/// Returns advice for a percentage in place of a share, `80` for 0.8; `None` for numbers that are hardly meant as such.
+/// Returns advice for a percentage in place of a share, `80` for 0.8; `None` for numbers that are probably not
+/// percentages.
 #[must_use]
 pub fn percentage_advice(number: f64) -> Option<String> {
     (10.0..=100.0)
@@ -91,7 +92,8 @@ fn plain(text: &str) -> Option<f64> {
         .filter(|number: &f64| number.is_finite())
 }
 
-/// Returns advice for a decimal comma, or for separators of thousands. With both signs, the last one is the decimal mark.
+/// Returns advice for a decimal comma, or for separators of thousands. If there are both commas and points, the last
+/// one is the decimal mark.
 fn separators(text: &str) -> Option<String> {
     let point = |number: &str| format!("write a decimal point: `{number}`");
     let bare = text.replace([' ', '\'', '\u{a0}', '\u{202f}', '\u{2019}'], "");

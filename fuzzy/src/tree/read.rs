@@ -45,7 +45,7 @@ pub struct Entry<'a> {
 }
 
 impl Entry<'_> {
-    /// Returns whether the key is the part of a number behind a decimal comma: `{window_s: 2,5}` has a key `5`.
+    /// Returns whether the key is the part of a number after a decimal comma: `{window_s: 2,5}` has a key `5`.
     pub(crate) fn is_rest_of_a_number(&self) -> bool {
         self.value.is_null() && self.key.bytes().all(|c| c.is_ascii_digit())
     }
@@ -383,7 +383,8 @@ impl Node {
         Diagnostic::error("wrong-type", self.span.clone(), message)
     }
 
-    /// Returns a finding for a document that is not a mapping. The text may be any file, and is not quoted.
+    /// Returns a finding for a document that is not a mapping. The text is not quoted, because it may come from any
+    /// file.
     #[must_use]
     pub fn unexpected_document(&self, what: &str) -> Diagnostic {
         let message = match &self.value {
@@ -418,7 +419,7 @@ impl Node {
     }
 
     /// Returns a suggestion for a list with a wrong number of numbers. `[0, 20,5]` contains a decimal comma: there is
-    /// no blank after it, but one after the other commas. `[0 1]` contains no comma.
+    /// no blank after it, but there is one after the other comma. `[0 1]` contains no comma.
     #[must_use]
     pub fn list_advice(items: &[Node], expected: usize) -> Option<String> {
         if let [only] = items

@@ -177,7 +177,7 @@ impl<'m> Validator<'m> {
         found
     }
 
-    /// Requires that a variable has a term that a rule names. `hedges` are those before the term.
+    /// Requires that a variable has the term that a rule names. `hedges` are the hedges before the term.
     pub(super) fn known_term(
         &mut self,
         kind: &str,

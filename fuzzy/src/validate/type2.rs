@@ -47,8 +47,9 @@ impl Validator<'_> {
         }
     }
 
-    /// Requires that an output with lower membership functions is not weighted, and that each of them is a fuzzy set. With
-    /// a singleton, both membership functions of the term must be singletons at the same position.
+    /// Requires that an output with lower membership functions is not weighted, and that each lower membership
+    /// function is a fuzzy set. If one membership function of a term is a singleton, both must be singletons at the
+    /// same position.
     pub(super) fn bounds_are_sets(&mut self, what: &str, output: &Output, spans: &VariableSpans) {
         let no_spans = TermSpans::default();
         for (i, term) in output.variable.terms.iter().enumerate() {

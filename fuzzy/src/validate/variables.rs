@@ -287,7 +287,7 @@ impl Validator<'_> {
         }
     }
 
-    /// Reports a single error for terms that their defuzzifier does not support.
+    /// Reports a single error for terms that the defuzzifier of the output does not support.
     fn misfits(&mut self, what: &str, output: &Output, misfits: &[usize], here: &Range<usize>) {
         let terms = misfits.iter().filter_map(|i| output.variable.terms.get(*i));
         let names: Vec<&str> = terms.clone().map(|term| term.name.as_str()).collect();

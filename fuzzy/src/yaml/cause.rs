@@ -232,8 +232,8 @@ fn is_key(key: &str) -> bool {
             .all(|c| c.is_alphanumeric() || c == '_' || c == '-')
 }
 
-/// Returns a finding if a colon at `at` is followed by a bracket, or a key at the beginning of the line that starts at
-/// `start` or of the line before it.
+/// Returns a finding if a bracket directly follows a colon: the colon at `at`, or the colon after the key at the
+/// beginning of the line at `start` or of the line before it.
 fn brackets_behind_colon(text: &str, at: usize, start: usize) -> Option<Diagnostic> {
     let finding = |colon: usize| {
         let message = String::from("a space is missing after a colon");

@@ -1,7 +1,7 @@
 //! A rule set in firmware: model, engine and evaluation with `core` and `alloc` only.
 //!
-//! `scripts/test-no-std` builds this for a processor without a standard library. In a build of the whole workspace, cargo enables
-//! the features that other members require, so such a build proves nothing.
+//! `scripts/test-no-std` builds this for a processor without a standard library. A build of the whole workspace proves
+//! nothing, because cargo then enables the features that other members require.
 #![no_std]
 
 use fuzzy::diagnostic::Findings;
@@ -10,7 +10,7 @@ use fuzzy::model::{MembershipFunction, Model, Output, Variable};
 use fuzzy::rule::{Condition, Rule};
 use fuzzy::{Engine, map::DecisionMap, map::Grid};
 
-/// The risk of a margin in [0, 0.5], in %: curved and straight terms, two rules.
+/// An engine that computes a risk in % from a margin in [0, 0.5], with curved and straight terms and two rules.
 ///
 /// # Errors
 /// Never: the model is complete.

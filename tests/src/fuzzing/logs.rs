@@ -13,7 +13,7 @@ fn read(bytes: &[u8]) -> Option<Flight> {
     }
 }
 
-/// Any bytes are a flight or an error. The format is detected from the content.
+/// Any bytes are read as a flight or rejected with an error. The format is detected from the content.
 pub fn flight_log(bytes: &[u8]) {
     if let Some(flight) = read(bytes) {
         check(&flight, bytes);

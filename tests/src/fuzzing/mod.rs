@@ -33,7 +33,7 @@ pub struct Target {
     pub share: u64,
 }
 
-/// All targets except the plans of C, which `tests/c/damage.c` damages.
+/// All targets, except for the plans of the C library, which `tests/c/damage.c` damages.
 pub const TARGETS: [Target; 8] = [
     Target {
         name: "flight_log",

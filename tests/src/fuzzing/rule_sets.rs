@@ -39,7 +39,7 @@ pub fn other_programs(bytes: &[u8]) {
 /// The separator between a profile and its rule set.
 pub(super) const PARTED: &str = "\n---\n";
 
-/// Any text gives a rule that prints and reads back as itself, or a mistake inside the text.
+/// Any text gives a rule that prints and reads back as itself, or an error located inside the text.
 pub fn rule(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else {
         return;
@@ -87,8 +87,8 @@ pub fn rule_set(bytes: &[u8]) {
     }
 }
 
-/// Any two texts, as a profile and its rule set, give findings inside the text, or an estimator whose risks are in their range
-/// and whose plan gives the same on board.
+/// Any two texts, as a profile and its rule set, give findings inside the text, or an estimator whose risks are in
+/// their range and whose plan gives the same risks on board.
 pub fn profile(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else {
         return;

@@ -40,8 +40,8 @@ pub(super) fn encode(address: u8, wait: u8, kind: u8, payload: &[u8]) -> Vec<u8>
     bytes
 }
 
-/// Any packets of several senders. The vehicle hovers and is not lost, whatever others send: only packets from its own address
-/// and with its own system are accepted.
+/// Sends any packets of several senders to a watch. The vehicle hovers and is not lost, whatever others send: only
+/// packets from its own address and with its own system are accepted.
 pub fn session(bytes: &[u8]) {
     let mut link = Link::new();
     let mut rest = bytes;

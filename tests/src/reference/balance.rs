@@ -35,7 +35,7 @@ impl Averages {
     }
 }
 
-/// The state of the balance in one time in the air.
+/// The state of the balance during one period in the air.
 #[derive(Clone, Default)]
 pub struct Balance {
     lately: Averages,
@@ -56,7 +56,7 @@ pub struct Balance {
 pub struct Trims(Averages);
 
 impl Balance {
-    /// The balance of a time in the air that begins with trims from before a gap.
+    /// The balance of a period in the air that begins with trims from before a gap.
     pub fn new(trims: Trims) -> Balance {
         Balance {
             trims,

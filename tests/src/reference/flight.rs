@@ -70,12 +70,12 @@ pub struct ReferenceResults {
     pub rows: Vec<Row>,
     /// The findings of the risk.
     pub episodes: Vec<RaisedEpisode>,
-    /// The findings of the balance: the last one of each time in the air.
+    /// The findings of the balance: the last one of each period in the air.
     pub unbalanced: Vec<BalanceFinding>,
 }
 
-/// State that is kept over a gap in the air: the trims, and after an alarm the last time at which the motors did not
-/// work as before it.
+/// State that is kept over a gap in the air: the trims and, after an alarm, the last time at which the motors did not
+/// yet work as before the alarm.
 type AcrossGap = (Trims, Option<f64>);
 
 /// Follows flights with a profile and a rule set; `factors` are those of the motors, empty if they are unknown.
@@ -199,7 +199,7 @@ fn rests(air: &mut Option<AirborneState>, sample: &Sample, profile: &Profile) ->
         .get_or_insert(since_high_s <= TROUBLE_S || is_apart)
 }
 
-/// The state during a time in the air. It is reset before and after that time.
+/// The state during a period in the air. It is reset before and after the period.
 struct AirborneState {
     take_off_s: f64,
     /// Values that ended before this time do not count in the long windows.
@@ -222,7 +222,7 @@ struct AirborneState {
     last_high_s: f64,
 }
 
-/// The results of a time in the air.
+/// The results of a period in the air.
 struct AirborneResults {
     episodes: Vec<RaisedEpisode>,
     unbalanced: Option<BalanceFinding>,
@@ -370,7 +370,7 @@ impl AirborneState {
         elevated
     }
 
-    /// An alarm lasts until the motors have worked as before it for `clear_after_s`.
+    /// An alarm lasts until the motors have worked as before the alarm for `clear_after_s`.
     fn doubt(&mut self, t_s: f64, verdict: &VerdictSettings) {
         let is_alarm = self.levels.level > Level::Good;
         let is_back = verdict.notices.imbalance.is_none() || self.balance.is_back;

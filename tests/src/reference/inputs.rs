@@ -9,8 +9,8 @@ use super::window::{Window, mean};
 
 /// The length of a bin in seconds.
 const BIN_S: f64 = 0.1;
-/// The age beyond the window up to which values are kept, in seconds, so that the bin before the
-/// first one is available.
+/// Values are kept for this time, in seconds, after they leave the window, so that the bin before the first bin of the
+/// window is available.
 const MORE_S: f64 = 5.0;
 
 /// The observation of an input in one sample, and its time span.

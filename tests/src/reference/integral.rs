@@ -11,8 +11,8 @@ use fuzzy::model::Defuzzifier;
 
 use super::{operators::ROUNDING, rules::Set};
 
-/// The value of a set; `None` if the set is 0 everywhere. NaN if the value depends on rounding: if the degree of a peak
-/// differs from the highest degree by just the tolerance within which it counts as highest.
+/// The value of a set; `None` if the set is 0 everywhere. NaN if the value depends on rounding, because a peak is lower
+/// than the highest one by almost exactly the tolerance within which both count as highest.
 pub fn defuzzify(set: &Set<'_>) -> Option<f64> {
     let pieces = pieces(set);
     if let Defuzzifier::Centroid | Defuzzifier::Bisector = set.defuzzifier {

@@ -14,9 +14,9 @@ pub struct Moment {
     pub risk: f64,
     /// The elevated risk in %.
     pub elevated: f64,
-    /// Whether the time is just after take-off, when only FAIL is raised.
+    /// Whether the take-off was so recent that only FAIL is raised.
     pub takes_off: bool,
-    /// Whether the motors slow down together, when FAIL is not raised.
+    /// Whether the motors slow down together; then FAIL is not raised.
     pub sinks: bool,
 }
 

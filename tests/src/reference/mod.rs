@@ -1,7 +1,8 @@
-//! A second implementation of the documents, independent of the libraries: direct, slow, in `f64`.
+//! A second implementation of the definitions in the documents, independent of the libraries: direct, slow, in `f64`.
 //!
-//! [`rules`] evaluates a rule set as docs/rule-sets.md defines it, [`type2`] one with interval type-2 terms. [`flight`] follows a flight as docs/profiles.md defines
-//! it: it keeps every sample and computes every window from scratch.
+//! [`rules`] evaluates a rule set as docs/rule-sets.md defines it, and [`type2`] evaluates one with interval type-2
+//! terms. [`flight`] follows a flight as docs/profiles.md defines it: it keeps every sample and computes every window
+//! from scratch.
 
 pub mod balance;
 pub mod elevated;

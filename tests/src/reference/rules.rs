@@ -1,5 +1,5 @@
-//! Evaluation of a rule set by definition: every formula written a second time, independent of the engine, and every integral
-//! a plain sum over many samples. Slow.
+//! Evaluates a rule set by definition: every formula is written a second time, independently of the engine, and every
+//! integral is a plain sum over many samples. Slow.
 
 use std::collections::BTreeMap;
 
@@ -142,8 +142,8 @@ fn value(
     })
 }
 
-/// The firing strengths of the rules that concern an output: rules that conclude it, and rules of a block in which another rule
-/// does.
+/// The firing strengths of the rules that concern an output: rules that conclude it, and rules of a block in which
+/// another rule concludes it.
 fn strengths(model: &Model, output: &Output, values: &Values<'_>) -> Vec<f64> {
     let concludes = |rule: &Rule| {
         let mut consequents = rule.rule.consequents.iter();

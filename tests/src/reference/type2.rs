@@ -136,8 +136,8 @@ fn weighted(
     })
 }
 
-/// The smallest and the largest centroid of the sets that have one bound up to a switch point, and the other one beyond it.
-/// Any set between the bounds has a centroid between these.
+/// The smallest and the largest centroid of the sets that equal one bound up to a switch point, and the other bound
+/// beyond it. The centroid of every set between the bounds is between these two.
 fn centroids(
     model: &Model,
     output: &Output,

@@ -1,7 +1,7 @@
 //! The values in a window and their weights.
 
 const SLOTS: f64 = 128.0;
-/// Values that extend into the window by less than this, in seconds, have left it.
+/// Values that extend into the window by less than this, in seconds, count as outside it.
 const RESOLUTION_S: f64 = 1e-6;
 
 /// A time window at one moment.

@@ -1,7 +1,8 @@
 //! Motor commands without their yaw part.
 
 /// The commands without their yaw part: `e_i - y_i yaw`, with the yaw effort of the least-squares solution of
-/// `e_i = roll r_i + pitch p_i + yaw y_i + thrust`. The unchanged commands if the factors do not determine these.
+/// `e_i = roll r_i + pitch p_i + yaw y_i + thrust`. The commands are unchanged if the factors do not determine the yaw
+/// effort.
 pub fn less_yaw(commands: &[f64], factors: &[[f64; 3]]) -> Vec<f64> {
     let Some(yaw) = yaw(commands, factors) else {
         return commands.to_vec();

@@ -7,8 +7,8 @@ use rayon::prelude::*;
 
 use super::{objective::Area, rows::Row, search::tune, votes::Votes};
 
-/// The fold of each vehicle. Each real vehicle has its own; simulated vehicles are distributed over them in turn, in a random but
-/// fixed order.
+/// The fold of each vehicle. Each real vehicle has its own fold; simulated vehicles are distributed over these folds in
+/// turn, in a random but fixed order.
 pub fn folds(rows: &[Row]) -> BTreeMap<&str, usize> {
     let vehicles = |are_real: bool| -> Vec<&str> {
         let rows = rows.iter().filter(|row| row.set.is_real() == are_real);
@@ -39,7 +39,7 @@ pub fn tune_without(
     (rows.iter().map(risk_pct).collect(), tuned)
 }
 
-/// Ranks the rows of an area by risk; a group is a flight.
+/// Ranks the rows of an area by risk, grouped by flight.
 pub fn judge(area: &Area, rows: &[Row], risks_pct: &[f64]) -> Ranking {
     let rows = rows
         .iter()

@@ -7,7 +7,7 @@ use super::{
     votes::{Input, Votes, WeightedSum},
 };
 
-/// A set of rows over which the area under the ROC curve counts.
+/// A set of rows for which the area under the ROC curve is part of the score.
 #[derive(Debug, Clone, Copy)]
 pub struct Area {
     /// The name of this set of rows.
@@ -18,7 +18,8 @@ pub struct Area {
     weight: f64,
 }
 
-/// The areas. Real vehicles are few, and half of their flights are of one vehicle: together they have two fifths of the weight.
+/// The areas. Real vehicles are few, and half of the real flights are of one vehicle: the areas of real flights have two
+/// fifths of the total weight.
 pub const AREAS: [Area; 8] = [
     Area {
         name: "real",
@@ -71,7 +72,7 @@ pub struct FalseAlarmSet {
     pub holds: fn(&Row) -> bool,
     /// The highest risk without a penalty, in %.
     pub above_pct: f64,
-    /// The penalty if the risks exceed `above_pct` by 1 % on average.
+    /// The penalty if the risks exceed `above_pct` by 1 percentage point on average.
     cost: f64,
 }
 
@@ -103,7 +104,7 @@ pub const FALSE_ALARM_SETS: [FalseAlarmSet; 3] = [
 /// The rows in the form that the search needs: a column for each voting input.
 pub(super) struct Problem {
     pub(super) columns: Vec<Vec<f64>>,
-    /// For each row, the degree to which votes count, and the sum of the fixed rules.
+    /// For each row, the degree of the common condition of all votes, and the weighted sum of the fixed rules.
     given: Vec<(f64, WeightedSum)>,
     /// The rows of each of [`AREAS`]: those that became critical, and the others.
     areas: Vec<[Vec<u32>; 2]>,

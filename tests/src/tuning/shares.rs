@@ -6,12 +6,12 @@ use fuzzy::{Engine, Model};
 
 use super::{Failure, Row, Set};
 
-/// The rows with a risk in a band, and how many of them became critical.
+/// The number of rows with a risk in a band, and how many of these rows became critical.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Share {
-    /// All rows.
+    /// The number of rows.
     pub moments: usize,
-    /// The rows that became critical.
+    /// The number of rows that became critical.
     pub followed: usize,
 }
 

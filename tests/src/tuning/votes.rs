@@ -95,9 +95,9 @@ impl Input {
         self.votes.iter().flatten().any(|vote| vote.weight < 1.0)
     }
 
-    /// Whether the peaks rise, a vote counts, and the risk never falls as the input rises, whatever the other votes are. For
-    /// this, from each term to the next, the pull of the vote towards the highest consequent must not decrease, and its pull
-    /// towards the lowest consequent must not increase.
+    /// Whether the peaks rise, at least one vote has a weight, and the risk never falls as the input rises, whatever
+    /// the other votes are. For the latter, from each term to the next, the pull of the vote towards the highest
+    /// consequent must not decrease, and its pull towards the lowest consequent must not increase.
     pub(super) fn is_sound(&self, consequents: &[f64]) -> bool {
         let low = consequents.iter().copied().fold(f64::INFINITY, f64::min);
         let high = consequents
@@ -207,7 +207,7 @@ impl Votes {
         (variable.low, variable.high)
     }
 
-    /// The degree to which votes count at a row, and the sum of the fixed rules.
+    /// The degree of the common condition of all votes at a row, and the weighted sum of the fixed rules.
     pub(super) fn given(&self, inputs: &[f64]) -> (f64, WeightedSum) {
         let degree = |condition: &[(usize, usize)]| {
             let degrees = condition.iter().map(|(place, term)| {

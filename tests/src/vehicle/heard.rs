@@ -49,8 +49,8 @@ impl Inbox {
 pub struct Progress {
     /// The vehicle's time, in ms, of the latest reported risk.
     pub followed_ms: AtomicU64,
-    /// Whether it reported that it knows the motors.
+    /// Whether the other side reported that it knows the motors.
     pub is_ready: AtomicBool,
-    /// The last other system that it reported: after a flight, a heartbeat of another system marks the end.
+    /// The last other system that the other side reported: after a flight, a heartbeat of another system marks the end.
     pub other_system: AtomicU64,
 }

@@ -106,9 +106,9 @@ pub(super) struct Vehicle {
 pub(super) struct Record {
     pub(super) t_us: u64,
     pub(super) flying: bool,
-    /// In us; NaN: no output.
+    /// The pulse of each motor in us; NaN without an output.
     pub(super) pwm: Vec<f64>,
-    /// NaN: not monitored.
+    /// The battery level in %; NaN if it is not monitored.
     pub(super) battery_pct: f64,
 }
 
@@ -171,7 +171,7 @@ pub(super) fn records(flight: &Flight) -> Vec<Record> {
     rows.collect()
 }
 
-/// The output at a record: risk and elevated risk in %, and level.
+/// The output at a record: the index of the record, risk and elevated risk in %, and level.
 pub(super) type RecordOutput = (usize, f64, f64, Level);
 
 /// The output of a run of the script.

@@ -56,7 +56,8 @@ pub(crate) fn program(
     compiled(source, name, profile, &[("PLAN", &plan)])
 }
 
-/// The same with the export of any file. The compiler is `cc`, which Rust requires for linking too.
+/// Like [`program`], for any shipped profile or profile file, with macros for the compiler. The compiler is `cc`, which
+/// Rust requires for linking too.
 pub(crate) fn compiled(
     source: &str,
     name: &str,
@@ -292,7 +293,7 @@ fn the_pages_in_c_run() {
     }
 }
 
-/// With the same names, the size of the profile included last would apply to both.
+/// If the profiles had the same names, the sizes of the one included last would apply to both.
 #[test]
 fn two_profiles_in_one_program_have_their_own_memory_sizes() {
     let folder = Folder::new();

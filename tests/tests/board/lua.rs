@@ -221,7 +221,7 @@ fn told_by_the_assessor(
     told
 }
 
-/// `3.4 s WARN, limit, motor 3` of the text `3.4 s, 4: FLAGRED: WARN risk 78 %, upper limit, motor 3`.
+/// Shortens a text such as `3.4 s, 4: FLAGRED: WARN risk 78 %, upper limit, motor 3` to `3.4 s WARN, limit, motor 3`.
 fn in_short(line: &str) -> String {
     let (when, text) = line.split_once(" s, ").unwrap();
     let (_, text) = text.split_once("FLAGRED: ").unwrap();
@@ -357,7 +357,7 @@ fn a_frame_with_more_motors_than_outputs_is_not_assessed() {
     }
 }
 
-/// With a heap of any size, the script runs or sends one text and ends, and the vehicle can be armed.
+/// With a heap of any size, the script either runs, or sends one text and ends. The vehicle can be armed in both cases.
 #[test]
 fn a_heap_that_is_too_small_does_not_block_arming() {
     const ENOUGH: u64 = 159_744;
@@ -555,7 +555,7 @@ fn the_script_evaluates_outputs_that_read_other_outputs() {
     }
 }
 
-/// 36 minutes in microseconds exceed a 32-bit integer; a 32-bit float has 24 bits.
+/// 36 minutes in microseconds exceed a 32-bit integer; a 32-bit float has a precision of 24 bits.
 #[test]
 #[ignore = "takes half a minute"]
 fn the_script_does_not_drift_in_a_long_flight() {

@@ -1,4 +1,4 @@
-//! PyIT2FLS: FCL, of which it supports points, AND and `COG`; and interval type-2 rule sets, which it samples.
+//! PyIT2FLS reads FCL, of which it supports points, AND and `COG`, and evaluates interval type-2 rule sets by sampling.
 
 use std::fmt::Write;
 

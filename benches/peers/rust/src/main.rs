@@ -1,7 +1,7 @@
 //! Times the Rust crates fuzzy-logic_rs and oxictl on a system written by the example `peers`:
 //! flagred-peers NAME FOLDER prints `system,program,ns per call,largest error in % of the range`.
 //!
-//! Both support only rules that are ANDs of one term of every input, so not the tipper.
+//! Both support only rules that are ANDs of one term of every input, so they cannot evaluate the tipper.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};

@@ -1,5 +1,5 @@
-//! Whatever a plan contains, `flagred_start` refuses it, or the monitor can process any number of samples. Debug
-//! builds also check bounds and overflow.
+//! Tests that `flagred_start` either refuses a damaged plan or creates a monitor that can process any number of
+//! samples. Debug builds also check bounds and overflow.
 #![allow(
     unsafe_code,
     clippy::unwrap_used,

@@ -117,7 +117,7 @@ fn shipped_text(name: &str) -> Result<String, JsError> {
     })
 }
 
-/// Fails to read a file, because a profile given as a text has no folder.
+/// Returns the error for a file that a profile names: a profile given as a text has no folder.
 fn no_file(path: &Path) -> Result<String, String> {
     Err(format!("`{}` cannot be read", path.display()))
 }

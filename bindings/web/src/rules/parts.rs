@@ -26,7 +26,7 @@ struct Parts {
 
 #[derive(Serialize)]
 struct NamedVariable {
-    /// The start of its name.
+    /// The start of the variable's name in the text.
     at: usize,
     terms: Vec<NamedTerm>,
 }
@@ -34,7 +34,7 @@ struct NamedVariable {
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
 struct NamedTerm {
-    /// The start of its name.
+    /// The start of the term's name in the text.
     at: usize,
     shape: String,
     parameters: String,
@@ -45,8 +45,8 @@ struct NamedTerm {
 
 #[wasm_bindgen(js_class = RuleText)]
 impl RuleText {
-    /// The positions of the names of variables and terms, inputs first, the fields of the terms, and the rules, as JSON;
-    /// `null` for a profile and for a text that cannot be read.
+    /// The variables (inputs first) and their terms, with the positions of their names and the fields of the terms, and the
+    /// rules, as JSON; `null` for a profile and for a text that cannot be read.
     pub fn parts(&self) -> Result<String, JsError> {
         let Some((places, model)) = structure::places(&self.document).zip(self.document.model())
         else {
@@ -111,7 +111,7 @@ impl RuleText {
         self.changed(values::set_range(&self.document, variable, (low, high)))
     }
 
-    /// The edits that change the unit of a variable, as JSON; an empty one is removed.
+    /// The edits that change the unit of a variable, as JSON; an empty `unit` removes it.
     #[wasm_bindgen(js_name = setUnit)]
     pub fn set_unit(&self, variable: usize, unit: &str) -> Result<String, JsError> {
         self.changed(values::set_unit(&self.document, variable, unit))

@@ -72,7 +72,7 @@ struct Named<'a> {
     unit: Option<&'a str>,
     low: f64,
     high: f64,
-    /// The part of the range in which its terms change.
+    /// The part of the range to show, around the part in which the terms change.
     shown: [f64; 2],
 }
 
@@ -107,9 +107,10 @@ struct About<'a> {
 struct Value<'a> {
     name: &'a str,
     value: Option<f64>,
-    /// The ends of the interval that interval type-2 terms determine; otherwise absent.
+    /// The lower end of the interval of an output that depends on interval type-2 terms; otherwise absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     low: Option<f64>,
+    /// The upper end of that interval.
     #[serde(skip_serializing_if = "Option::is_none")]
     high: Option<f64>,
     is_default: bool,
@@ -208,7 +209,7 @@ impl RuleSet {
     }
 
     /// The cells of a map: all values, then all coverages, then the numbers of the dominant rules, then whether the
-    /// value was filled. For each point of the first axis there is one for each point of the second. NaN is unknown.
+    /// value was filled (1 or 0). In each of these lists, the point of the second axis varies fastest. NaN is unknown.
     pub fn map(&self, view: &View) -> Result<Vec<f64>, JsError> {
         let cells = self.slice(view)?.cells;
         let number = |rule: Option<usize>| rule.map_or(f64::NAN, |rule| rule as f64 + 1.0);

@@ -236,7 +236,7 @@ struct Drawn<'a> {
     is_output: bool,
     low: Option<f64>,
     high: Option<f64>,
-    /// The part of the range in which its terms change.
+    /// The part of the range to show, around the part in which the terms change.
     shown: [Option<f64>; 2],
     terms: Vec<DrawnTerm<'a>>,
 }
@@ -266,7 +266,7 @@ struct Handle {
 }
 
 impl<'a> Drawn<'a> {
-    /// Creates a variable to draw. `output` is `None` for an input; for an output, it is whether the terms are
+    /// Creates a variable to draw. `output` is `None` for an input. For an output, it contains whether the terms are
     /// numbers.
     fn new(
         document: &Document,
@@ -316,7 +316,7 @@ impl<'a> Drawn<'a> {
     }
 }
 
-/// A membership function over the range of a variable; the corners if it has corners.
+/// The curve of a membership function over the range of a variable; only the corners if the function is piecewise linear.
 fn curve(variable: &Variable, shape: &MembershipFunction, height: f64) -> Vec<f64> {
     let (low, high) = (variable.low, variable.high);
     let at = |x: f64| [x, height * shape.membership(x)];

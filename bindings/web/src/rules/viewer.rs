@@ -10,7 +10,7 @@ use wasm_bindgen::{JsError, prelude::wasm_bindgen};
 
 use super::{json, set::RuleSet};
 
-/// Points of a hedged curve.
+/// The number of points of the curve of a proposition with hedges.
 const SAMPLES: usize = 100;
 
 #[derive(Serialize)]
@@ -32,7 +32,7 @@ struct Cell<'a> {
     /// The hedges and the term: `very high`.
     words: String,
     term: Option<&'a str>,
-    /// The hedged curve, as alternating x and degree; empty without hedges, because it is then the curve of the term.
+    /// The curve of the term after the hedges, as alternating x and degree; empty without hedges.
     curve: Vec<f64>,
 }
 

@@ -61,7 +61,7 @@ pub fn of(document: &Document, variable: usize, term: usize) -> Vec<Handle> {
 /// about a thousandth of the range.
 ///
 /// # Errors
-/// If the handle cannot be moved; the error is the reason.
+/// Returns the reason if the handle cannot be moved.
 pub fn moved(
     document: &Document,
     (variable, term): (usize, usize),
@@ -117,7 +117,7 @@ impl<'d> Place<'d> {
         !self.spans.partition.is_empty()
     }
 
-    /// The number of decimals of a position, so that its last digit stands for a thousandth of the range or less.
+    /// The number of decimals of a position: its last digit is worth a thousandth of the range or less.
     fn decimals(&self) -> usize {
         let width = self.variable.high - self.variable.low;
         (3.0 - width.log10().floor()).clamp(0.0, 17.0) as usize

@@ -1,4 +1,4 @@
-//! Advice for an option or a word that a command does not take.
+//! Advice for an option or a word that a command does not accept.
 
 use std::path::Path;
 
@@ -115,7 +115,7 @@ impl<'a> Line<'a> {
             .then(|| format!("`{option}` is an option of {}", others.join(", ")))
     }
 
-    /// How a command without `--output` writes a file.
+    /// Explains how a command without `--output` writes a file.
     fn output(&self, file: &str) -> String {
         let ending = Path::new(file).extension().unwrap_or_default();
         let option = format!("--{}", ending.to_string_lossy().to_ascii_lowercase());
@@ -127,7 +127,7 @@ impl<'a> Line<'a> {
         }
     }
 
-    /// Advice for a word that is not an option, if the command takes no further such word.
+    /// Advice for a word that is neither an option nor an argument that the command still accepts.
     pub(super) fn argument(&self, word: &str) -> Option<String> {
         let name = self.command.get_name();
         let positionals = self.positionals();

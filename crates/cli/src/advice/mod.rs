@@ -20,7 +20,7 @@ use crate::{
     path::{RULES, has_ending},
 };
 
-/// Adds advice to an error of clap, in place of options and commands whose names are merely similar.
+/// Adds advice to an error of clap, if there is any. It replaces clap's suggestions of similar names.
 pub(crate) fn improve(error: &mut clap::Error, program: &Command, words: &[OsString]) {
     let words: Vec<String> = words
         .iter()
@@ -170,7 +170,7 @@ fn advice(error: &clap::Error, program: &Command, words: &[String]) -> Option<St
     }
 }
 
-/// Explains the arguments that are missing, by their help.
+/// Explains each missing argument with its help text.
 fn required(error: &clap::Error, program: &Command, words: &[String]) -> Vec<String> {
     let (Some(line), Some(ContextValue::Strings(missing))) =
         (Line::of(words, program), error.get(ContextKind::InvalidArg))

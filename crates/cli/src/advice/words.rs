@@ -144,7 +144,7 @@ pub(super) const RENAMED: &[(&str, &str)] = &[
 /// Options here whose value is a file to write.
 pub(super) const WRITTEN: &[&str] = &["--output", "--svg", "--html"];
 
-/// Options here whose value is a file with the ending of the option.
+/// Options here whose value is a file with the name of the option as its extension.
 pub(super) const PICTURES: &[&str] = &["--svg", "--html"];
 
 /// Options of other programs for the file that is a positional argument here.

@@ -14,9 +14,9 @@ use fuzzy::{
 use super::{BEFORE_S, Cut, FileRows, Plan, Row};
 use crate::{failure::Failure, flights::open_complete};
 
-/// Seconds after take-off without rows of [`Cut::Ahead`], if the header does not contain the judged time.
+/// Seconds after take-off in which [`Cut::Ahead`] makes no rows, if the header of the flight lacks the judged time.
 const AFTER_TAKE_OFF_S: f64 = 2.0;
-/// Seconds before the end of a time in the air without rows of [`Cut::Ahead`], if the header does not contain the judged time.
+/// Seconds before landing in which [`Cut::Ahead`] makes no rows, if the header of the flight lacks the judged time.
 const BEFORE_END_S: f64 = 1.0;
 
 pub(super) fn rows(log: &str, plan: &Plan) -> Result<FileRows, Failure> {

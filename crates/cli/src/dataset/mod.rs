@@ -82,7 +82,7 @@ struct Row {
     from_s: Option<f64>,
     to_s: Option<f64>,
     inputs: Vec<f64>,
-    /// For [`Cut::Ahead`]: the largest error over each of [`BEFORE_S`]; `None` is unknown.
+    /// For [`Cut::Ahead`]: the largest error in each of the periods [`BEFORE_S`]; `None` is unknown.
     errors_before_deg: Vec<Option<f64>>,
     att_rmse_deg: f64,
     risk_pct: f64,
@@ -166,9 +166,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(exit)
 }
 
-/// The inputs of the paper come first, regardless of the inputs of the profile. An input of the
-/// profile that has one of these names but is another quantity becomes `input_NAME`, as in the
-/// steps of `assess`. With [`Cut::Ahead`] the inputs are those of the profile and keep their names.
+/// Adds the inputs of the paper, `margin` and `spread`, in front of the profile's inputs if the profile lacks them. An
+/// input of the profile that has one of these names but measures another quantity is first renamed to `input_NAME`, as
+/// in the steps of `assess`; with [`Cut::Ahead`] it keeps its name.
 fn with_margin_and_spread(mut profile: Profile, cut: Cut) -> Profile {
     let paper = [
         ("margin", Statistic::Mean, Signal::MotorMargin),

@@ -75,7 +75,7 @@ impl<'p> Evaluator<'p> {
         }
     }
 
-    /// Evaluates the rows of a block, and counts what is reported about them.
+    /// Evaluates the rows of a block, and returns the counts for the report.
     pub(super) fn evaluate(&mut self, block: &mut Block) -> Result<Tally, Failure> {
         let plan = self.plan;
         let records = block.records.get(..block.rows).unwrap_or_default();

@@ -49,10 +49,10 @@ pub(crate) struct Arguments {
     /// Write a rule set as FLL, for fuzzylite
     #[arg(long, group = "language")]
     fll: bool,
-    /// Write a rule set as FCL, for jFuzzyLogic and other programs of IEC 61131-7
+    /// Write a rule set as FCL, for jFuzzyLogic and other IEC 61131-7 programs
     #[arg(long, group = "language")]
     fcl: bool,
-    /// Write a rule set as FML, for JFML and other programs of IEEE 1855
+    /// Write a rule set as FML, for JFML and other IEEE 1855 programs
     #[arg(long, group = "language")]
     fml: bool,
     /// Leave out what the format cannot express, also whole rules, in Rust and C also `samples`; results may differ
@@ -144,7 +144,7 @@ pub fn export_rules(
 }
 
 impl Arguments {
-    /// Refuses a file with the extension of another kind, so that a rule set named by mistake is not replaced.
+    /// Refuses an output file with the extension of another format, so that a rule set named by mistake is not replaced.
     fn check_ending(&self) -> Result<(), Failure> {
         let (what, endings): (&str, &[&str]) = match self.format() {
             Some(Format::Fis) => ("FIS", &["fis"]),
@@ -164,7 +164,7 @@ impl Arguments {
         })
     }
 
-    /// Reports that a file contains what is exported if no file is named.
+    /// Prints a note if the default profile or rule set was written to a file.
     fn tell_built_in(&self, what: &str) {
         if self.file == profile::DEFAULT && self.output != Path::new("-") {
             let written = self.output.display();

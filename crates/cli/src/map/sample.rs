@@ -21,7 +21,8 @@ pub(super) fn table(evaluated: &MapSource, points: u32) -> Result<String, Failur
     Ok(out)
 }
 
-/// Returns a point of a sequence that fills the ranges evenly: the fractional parts of multiples of 1/g, 1/g^2, ..., where g is the root of
+/// Returns a point of a sequence that fills the ranges evenly (R-sequence): its coordinates are the fractional parts of
+/// multiples of 1/g, 1/g^2, ..., plus 0.5, where g is the positive root of g^(n+1) = g + 1 for n inputs.
 fn point(inputs: &[Variable], index: u32) -> Vec<f64> {
     let dimensions = inputs.len() as f64;
     let mut root = 2.0_f64;

@@ -21,7 +21,7 @@ const TAG_DIGITS: usize = 32;
 
 pub(super) struct EditedFile {
     path: PathBuf,
-    /// The reason why the file is read-only, if it is; empty if the user chose that.
+    /// The reason why the file is read-only; empty if the user chose that, `None` if the file can be changed.
     pub(super) read_only: Option<&'static str>,
 }
 

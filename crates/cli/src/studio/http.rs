@@ -186,7 +186,7 @@ impl Response<'_> {
     }
 }
 
-/// A connection with a deadline, however slowly the other side sends or reads.
+/// A connection with a deadline, however slowly the client sends or reads.
 pub(super) struct DeadlineStream<'s> {
     stream: &'s TcpStream,
     end: Instant,

@@ -1,8 +1,9 @@
 //! Access to the page and its file, only for the user of this machine who started the studio.
 //!
-//! Every user of the machine can connect, and every page in a browser can send requests here. So
-//! the path begins with a token that cannot be guessed, the host must be the served address (a page
-//! of another site could use a name that resolves to it), and requests of other pages are refused.
+//! Every user of the machine can connect, and every page in a browser can send requests here.
+//! Therefore the path begins with a token that cannot be guessed, the `Host` header must name the
+//! served address (another site could use a host name that resolves to it), and requests of other
+//! pages are refused.
 
 use std::{
     borrow::Cow,
@@ -27,14 +28,15 @@ use crate::failure::Failure;
 
 /// The policy of responses other than the page.
 const NOTHING: &str = "default-src 'none'";
-/// A directive that a page cannot set in the policy that it contains itself.
+/// A directive that is sent as a header, because browsers ignore it in a policy inside the page.
 const NO_FRAMES: &str = "; frame-ancestors 'none'";
 
 pub(super) struct Server {
     /// The host and port, as a browser names them.
     authority: String,
     token: String,
-    /// A path that redirects to the page once. Other users can see a browser's command line, which contains it, but not the target.
+    /// A path that redirects to the page once. It is in the browser's command line, which other users can see; the address of
+    /// the page is not.
     ticket: String,
     is_used: AtomicBool,
     page: Page,

@@ -45,7 +45,8 @@ impl Extent {
         }
     }
 
-    /// Returns a warning if the values of a variable are shares, but its range is much wider. Values of only 0 and 1 are outcomes.
+    /// Returns a warning if the values of a variable are shares, but its range is much wider. If all values are 0 or 1,
+    /// they count as outcomes, not as shares.
     pub(crate) fn warning(self, variable: &Variable) -> Option<String> {
         const FEWEST: u64 = 3;
         const NARROWEST: f64 = 10.0;

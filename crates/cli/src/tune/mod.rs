@@ -315,7 +315,8 @@ fn warning(outcome: &TuneOutcome) -> Option<String> {
     ))
 }
 
-/// Returns the rule set with the numbers of a checkpoint, if that exists. It must not differ in anything else.
+/// Returns the rule set with the numbers of the checkpoint, if the checkpoint exists. It may differ from the rule set only
+/// in numbers that may change.
 fn resumed(
     arguments: &Arguments,
     model: &Model,

@@ -37,7 +37,7 @@ use crate::{
 const TICK: Duration = Duration::from_millis(50);
 /// The interval at which the screen is drawn.
 const FRAME: Duration = Duration::from_millis(500);
-/// Maximum number of packets queued for evaluation. When the queue is full, the links wait.
+/// Maximum number of packets queued for evaluation. When the queue is full, no more packets are read from the links.
 const PACKETS: usize = 20_000;
 
 /// A packet or a message from a link.

@@ -17,8 +17,10 @@ use super::{
 };
 use flagred_report::document::FindingDocument;
 
-/// The versions of the layouts. They change when a name is removed or changes its meaning.
+// The versions of the layouts increase when a name is removed or changes its meaning.
+/// The layout of `--jsonl`.
 const SCHEMA: &str = "flagred.watch/1";
+/// The layout of `--all --jsonl`.
 const FLEET_SCHEMA: &str = "flagred.watch-all/1";
 
 /// The content of a line, with the names of docs/json.md.

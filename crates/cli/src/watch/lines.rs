@@ -54,7 +54,7 @@ pub(crate) fn words(at_s: f64, text: &str) -> String {
     format!("{at_s:8.1} s  {}\n", visible(text))
 }
 
-/// Describes an event other than a risk, for which [`Words`] adds the current state.
+/// Describes an event other than a risk. [`Words`] describes a risk, together with the current state.
 pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimator) -> String {
     match event {
         Event::Found { system, vehicle } => format!("found vehicle {system}: {}", name(vehicle)),

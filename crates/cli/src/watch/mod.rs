@@ -103,7 +103,8 @@ pub(crate) struct Arguments {
     record: Option<PathBuf>,
 }
 
-/// Returns the first input without `if_missing` that reads a signal that no MAVLink message contains, and that signal.
+/// Returns the first input that cannot be computed live, and the reason: a signal that no MAVLink message contains, if
+/// the input has no `if_missing`.
 fn not_live(estimator: &Estimator) -> Option<(&str, &str)> {
     let known = known_signals();
     let is_live = |signal: &str| {

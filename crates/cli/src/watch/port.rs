@@ -24,7 +24,7 @@ const BUFFER: usize = 4 << 20;
 /// An open endpoint.
 pub(crate) struct Port {
     kind: PortState,
-    /// The reason why the endpoint could not be opened at first, until that is reported.
+    /// The reason why the endpoint could not be opened at first; `None` after it was reported.
     closed_because: Option<String>,
     /// The number of packets that could not be sent.
     unsent: u64,
@@ -88,7 +88,7 @@ pub(crate) enum PortEvent {
 }
 
 impl Port {
-    /// Opens an endpoint. If the other side is not available yet, opening is retried later, unless `waits` is false.
+    /// Opens an endpoint. If it is not available yet, opening is retried later, unless `waits` is false.
     ///
     /// # Errors
     ///

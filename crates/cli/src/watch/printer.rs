@@ -9,7 +9,7 @@ use std::{
 
 use crate::output;
 
-/// Time limit for the last output to be read before the program ends.
+/// How long the program waits at its end for the last output to be read.
 const LAST_WORDS: Duration = Duration::from_secs(1);
 
 /// Prints pieces of text in their order.

@@ -29,7 +29,7 @@ const TEXT: usize = 50;
 const WATCH: u32 = 0xf1 << 24;
 const AGE: u32 = (1 << 24) - 1;
 
-/// Message ids.
+// MAVLink message ids.
 const HEARTBEAT: u32 = 0;
 const NAMED_VALUE_FLOAT: u32 = 251;
 const STATUSTEXT: u32 = 253;

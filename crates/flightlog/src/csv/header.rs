@@ -74,7 +74,7 @@ pub(super) fn read_header(input: &mut Input<'_>) -> Result<(Vec<HeaderLine>, u64
     }
 }
 
-/// The key and the value of a header line without `#`, at the start of a text.
+/// The key and the value in the first line of a text, if that is a header line without its `#`.
 pub(super) fn entry_without_sign(text: &[u8]) -> Option<(String, String)> {
     let line = text.split(|byte| *byte == b'\n').next()?;
     let line = String::from_utf8_lossy(line.strip_prefix(BOM).unwrap_or(line));

@@ -9,13 +9,13 @@ use crate::outputs::{LONGEST_PULSE_US, PULSES_US};
 use crate::signal::{Label, SET_BACK_S};
 use crate::{Commands, Intervals, ReadError, Report, Series};
 
-/// Fractions up to this far outside 0 to 1 are rounding errors or slightly exceeded limits.
+/// Fractions that are outside 0 to 1 by at most this are rounding errors or slightly exceeded limits.
 const MOST_OUTSIDE: f64 = 0.5;
 const HELP_FRACTIONS: &str = "name columns of pulse widths in us `pwm1`.. and add the limits; divide percent by 100; for DShot see docs/flight-csv.md";
 const HELP_SHORT: &str = "give every row a cell for each column, empty where the value is unknown";
-/// The furthest accepted time from 0, in seconds. It admits 64-bit counts of microseconds before
-/// and after conversion. If a single damaged time beyond this limit were accepted, all later times
-/// would seem to go back.
+/// The largest accepted distance of a time from 0, in seconds. Any 64-bit count of microseconds is within it after
+/// conversion to seconds. If a single damaged time beyond this limit were accepted, all later times would seem to go
+/// back.
 const FURTHEST_S: f64 = 1e14;
 
 fn is_far_outside(command: f64) -> bool {
@@ -212,7 +212,7 @@ impl RowCollector {
             .get_or_insert_with(|| problem(line, text, help));
     }
 
-    /// The time of a row. A row without a time cannot be placed, and skipping it would make the flight shorter.
+    /// The time of a row; an error for a row without one, because skipping that row would make the flight shorter.
     fn time(&mut self, layout: &Layout, record: &ByteRecord, line: u64) -> Result<f64, String> {
         if let Ok(t_s) = number(record, layout.time)
             && t_s.is_finite()
@@ -325,7 +325,8 @@ impl RowCollector {
             .map_or(!self.has_air, |(_, state)| *state)
     }
 
-    /// The times in the air; `None` if the column exists but is empty. The log may continue after the last row.
+    /// The times in the air; `None` if the column exists but is empty. If the log ended in the air, `end_s` is the end
+    /// of the last of these times, which may be after the last row.
     pub(super) fn in_air(&self, end_s: Option<f64>) -> Option<Intervals> {
         if self.has_air && self.air_changes.is_empty() {
             return None;

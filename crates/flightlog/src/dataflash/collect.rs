@@ -346,11 +346,11 @@ fn kind(kinds: &[Option<MessageType>], type_id: u8) -> Option<&MessageType> {
     kinds.get(usize::from(type_id))?.as_ref()
 }
 
-/// The number of different series that changing definitions can create; any log has fewer.
+/// The maximum number of different series that changing definitions can create; undamaged logs have fewer.
 const MOST_SERIES: usize = 256;
 
-/// The index of the series of a message that has these signals. If the definitions are repeated, it is the existing
-/// one.
+/// The index of the series for a message with these signals: the existing series if the definition is repeated,
+/// otherwise a new one.
 fn series_of(known: &mut Vec<(&str, Series)>, name: &'static str, labels: Vec<Label>) -> usize {
     let same = |(of, series): &(&str, Series)| {
         *of == name && series.signals().map(|signal| signal.label).eq(&labels)
@@ -365,7 +365,7 @@ fn series_of(known: &mut Vec<(&str, Series)>, name: &'static str, labels: Vec<La
     })
 }
 
-/// UTC of a GPS message with a fix, from its week and the time in it.
+/// The UTC time of a GPS message with a fix, from its GPS week and its time of the week.
 fn gps_utc_s(format: &Format, cells: &Cells<'_>) -> Option<f64> {
     let number = |labels| cells.number(format, format.column(labels)?);
     let has_fix = number(&["Status"])? >= 3.0;

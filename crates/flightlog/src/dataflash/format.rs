@@ -106,7 +106,7 @@ fn width(kind: u8) -> usize {
     }
 }
 
-/// The text up to the first zero; `None` if it is not printable ASCII, so not a definition.
+/// The text up to the first zero; `None` if it is not printable ASCII and therefore not part of a definition.
 fn ascii(bytes: &[u8]) -> Option<Cow<'_, str>> {
     let text = bytes.split(|&byte| byte == 0).next()?;
     let printable = text.iter().all(|byte| (b' '..=b'~').contains(byte));

@@ -26,7 +26,7 @@ impl Landing {
 }
 
 /// Armed and in-air times from the events of the log. The in-air times are known only if the log contains take-offs or
-/// landings. A boot ends both.
+/// landings. A boot ends an armed time and an in-air time.
 pub(super) fn air_from_events(
     events: &[(f64, Landing)],
     boots_s: &[f64],

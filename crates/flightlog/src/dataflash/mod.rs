@@ -102,8 +102,8 @@ impl<'o> Scanner<'o> {
         at.min(window.len())
     }
 
-    /// Handles the start of `bytes` if it is not a record, or a record that is not followed by another; returns the
-    /// number of bytes handled. Up to `sure`, damage can be distinguished from a record that continues after the
+    /// Processes the start of `bytes`, which is not a record or is a record that no other record follows; returns the
+    /// number of processed bytes. Up to `sure`, damage can be distinguished from a record that continues after the
     /// window.
     fn step(&mut self, bytes: &[u8], sure: usize, at_end: bool) -> usize {
         let found = self.record(bytes);

@@ -51,7 +51,7 @@ pub(super) struct UntimedMessages {
     before_first: usize,
     /// The time of the last message with a time.
     last_s: Option<f64>,
-    /// The time between messages when messages were last spread.
+    /// The interval at which messages were last spread, in seconds.
     step_s: f64,
 }
 
@@ -104,7 +104,8 @@ impl UntimedMessages {
         self.spread(self.last_s.unwrap_or_default(), 0)
     }
 
-    /// Spreads the pending messages. `from_s` is the time of the message that came after the first `before` of them.
+    /// Spreads the pending messages. `from_s` is the time of the message with a time that followed the first `before`
+    /// of the pending messages.
     fn spread(
         &mut self,
         from_s: f64,

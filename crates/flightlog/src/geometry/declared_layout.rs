@@ -49,8 +49,8 @@ impl DeclaredLayout {
         }
     }
 
-    /// The layout by FRAME_CLASS and FRAME_TYPE (3.5 and later), or by the class in the message `Frame: QUAD` and
-    /// FRAME, which is the type in older firmware. Without that message the class follows from the number of motors, if
+    /// The layout by FRAME_CLASS and FRAME_TYPE (3.5 and later). In older firmware, the class is in the message
+    /// `Frame: QUAD`, and FRAME is the type. Without that message, the class is derived from the number of motors if
     /// only one class fits.
     pub(crate) fn of_ardupilot(parameters: &Parameters, vehicle: &Vehicle) -> Self {
         let frame = vehicle.frame.as_deref();
@@ -162,7 +162,7 @@ fn thrust_coefficients(parameters: &Parameters, count: u16) -> Vec<f64> {
     known.unwrap_or_else(|| vec![1.0; usize::from(count)])
 }
 
-/// The layout of a group of PX4's airframes
+/// FRAME_CLASS and FRAME_TYPE of the layout of a PX4 airframe, by the group of its number
 /// (<https://docs.px4.io/main/en/airframes/airframe_reference.html>).
 fn airframe_group(airframe: i64) -> Option<(i64, i64)> {
     use super::tables::{HEXA, OCTA, OCTAQUAD, PLUS, QUAD, X, Y6, Y6B};

@@ -14,21 +14,20 @@ const FEWEST_ROWS: usize = 100;
 const FITS: f64 = 0.05;
 /// A layout does not fit if at least this share of the variance is outside its space.
 const FITS_NOT: f64 = 0.2;
-/// A share is clearly larger than another share `s` if it exceeds `s` times the first number plus
-/// the second number.
+/// `(factor, offset)`: a share is clearly larger than another share `s` if it exceeds `factor * s + offset`.
 const CLEARLY: (f64, f64) = (5.0, 0.002);
-/// The minimum correlation of the efforts with the outputs of the rate controllers for a layout to be right. Right
-/// layouts have 0.44 to 1, and more than any other layout.
+/// The minimum correlation of the efforts with the outputs of the rate controllers for a layout to be right. It is
+/// 0.44 to 1 for the right layout, and higher than for any other layout.
 const FOLLOWS: f64 = 0.4;
-/// The minimum difference between this correlation of the right layout and that of another layout.
+/// How much this correlation must be higher for the right layout than for any other layout.
 const FOLLOWS_ABOVE: f64 = 0.2;
-/// The correlation of effort and attitude error up to which a layout may be wrong. Right layouts have 0.0 to 0.9;
-/// well-tuned and slow flights have low values.
+/// A declared layout is doubted only if its correlation of effort and attitude error is below this. Right layouts have
+/// 0.0 to 0.9; well-tuned and slow flights have low values.
 const GOES_WITHOUT: f64 = 0.1;
 /// Another layout fits if its correlation of effort and attitude error exceeds this.
 const GOES_WITH: f64 = 0.4;
-/// Another layout also fits if its correlation exceeds the first number, and exceeds that of the declared layout by
-/// more than the second number.
+/// `(minimum, lead)`: another layout also fits if its correlation exceeds `minimum`, and exceeds that of the declared
+/// layout by more than `lead`.
 const GOES_WITH_RATHER: (f64, f64) = (0.25, 0.6);
 
 /// The signals that show whether a layout is right: the outputs of the rate controllers, and the attitude.

@@ -10,7 +10,7 @@ use crate::{Flight, Motor, Series, VehicleKind};
 
 /// The mixer factors of the motors, and their source.
 ///
-/// # Example: turning the nose is not an imbalance
+/// # Example: a yaw command is not an imbalance
 /// ```
 /// let log = "# frame: QUAD/X\nt_s,motor1,motor2,motor3,motor4\n0,0.6,0.6,0.4,0.4\n";
 /// let flight = flagred_flightlog::read(log.as_bytes(), &flagred_flightlog::Options::default())?;
@@ -72,7 +72,8 @@ impl Geometry {
 
 /// The first and last time of the data that is read from every log, whichever signals are kept: the motor commands and
 /// the signals of the geometry. Other signals are ignored, because the choice of kept signals must not affect when the
-/// vehicle counts as armed or in the air. If a log contains none of these data, the time span of all kept signals.
+/// vehicle counts as armed or in the air. If a log contains none of this data, the times are those of all kept
+/// signals.
 pub(crate) fn span_s(flight: &Flight) -> Option<(f64, f64)> {
     let is_read = |series: &&Series| {
         let mut signals = series.signals();

@@ -177,7 +177,7 @@ pub(super) fn layout(class: i64, kind: i64) -> Option<Vec<(u16, [f64; 3])>> {
     Some((1..).zip(normalised(factors)).collect())
 }
 
-/// Factors relative to the largest of their axis.
+/// Divides the factors by the largest one of their axis.
 pub(super) fn normalised(mut factors: Vec<[f64; 3]>) -> Vec<[f64; 3]> {
     for axis in 0..3 {
         let largest = factors

@@ -69,7 +69,7 @@ pub(crate) enum DecoderChange {
     Text(String),
 }
 
-/// SERVO_OUTPUT_RAW.
+/// The content of a SERVO_OUTPUT_RAW message.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ServoOutputs {
     pub(crate) port: u8,
@@ -142,9 +142,9 @@ impl Decoder {
 
     /// Whether the vehicle is in the air; `None` while that is unknown.
     ///
-    /// The source is EXTENDED_SYS_STATE. Without it, it is the heartbeat of ArduPilot, which is on standby while landed
-    /// and active otherwise. During a failsafe it is critical in either case, which counts as in the air. PX4 is active
-    /// as soon as it is armed, so its heartbeat is not used.
+    /// The source is EXTENDED_SYS_STATE or, without that message, the state in ArduPilot's heartbeat: standby while
+    /// landed, active otherwise. During a failsafe, that state is critical even on the ground, and counts as in the
+    /// air. PX4 reports active as soon as it is armed, so its heartbeat is not used.
     pub(crate) fn is_in_air(&self) -> Option<bool> {
         let by_heartbeat = self.is_active.filter(|_| !self.is_px4());
         self.is_flying
@@ -152,14 +152,14 @@ impl Decoder {
             .map(|flying| flying && self.is_armed)
     }
 
-    /// Whether the vehicle has ever reported a landed state. A heartbeat is not one: after a landing in a failsafe it
-    /// is still critical.
+    /// Whether the vehicle has ever reported a landed state. The state in a heartbeat does not count, because it is
+    /// still critical after a landing in a failsafe.
     pub(crate) fn has_landed_state(&self) -> bool {
         self.has_landed_state
     }
 
-    /// Whether the armed vehicle reports that it is in the air, and its motors were not stopped on purpose, as by a
-    /// pilot who lands and does not wait for the land detector.
+    /// Whether the vehicle is armed and reports that it is in the air, and its motors were not stopped on purpose. A
+    /// pilot may stop them after a landing without waiting for the land detector.
     #[cfg(feature = "mavlink")]
     pub(crate) fn reports_flight(&self) -> bool {
         self.is_flying == Some(true) && self.is_armed && !self.is_terminating
@@ -257,7 +257,7 @@ impl Decoder {
         }
     }
 
-    /// Whether the vehicle reported that it does not have a parameter, or that it cannot be read.
+    /// Whether the vehicle reported that a parameter does not exist or cannot be read.
     #[cfg(feature = "mavlink")]
     pub(crate) fn is_absent(&self, name: &str) -> bool {
         self.absent.contains(name)

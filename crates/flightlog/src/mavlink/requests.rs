@@ -52,14 +52,15 @@ const PARAMETER_TRIES: u32 = 20;
 #[derive(Debug, Default)]
 pub struct Requests {
     rate_tries: u32,
-    /// The time at which rates were last requested or measured, and the number of each message received until then.
+    /// The time at which rates were last requested or measured, and the number of messages of each kind received until
+    /// then.
     looked: Option<(f64, [u64; RATED.len()])>,
     /// Whether the rate of each message was too low in the latest measurement.
     slow: [bool; RATED.len()],
     has_old_way: bool,
     has_been_fast: bool,
     slow_looks: u32,
-    /// Whether the next measurement is of a rate that just dropped.
+    /// Whether the current measurement is that of a rate that has just dropped.
     measures: bool,
     slowed_hz: Option<f64>,
     parameter_tries: u32,
@@ -78,9 +79,9 @@ impl Requests {
         self.parameters_done
     }
 
-    /// Returns the rate of the motor commands, in Hz, once each time it drops below half of the requested rate, because
-    /// another station requested less or the link is too slow. It is measured after the drop, over at least two
-    /// seconds.
+    /// Returns the rate of the motor commands, in Hz, once after each drop below half of the requested rate, which
+    /// happens if another station requests less or the link is too slow. The rate is measured after the drop, over at
+    /// least two seconds.
     pub fn take_slowed_hz(&mut self) -> Option<f64> {
         self.slowed_hz.take()
     }
@@ -93,7 +94,7 @@ impl Requests {
     }
 
     /// Adds the messages to send now to `out`. `now_s` is the time of the receiver's clock in seconds; `lost_share` is
-    /// the share of the vehicle's packets that are lost on the way, which does not count as a low rate.
+    /// the share of the vehicle's packets that are lost on the way. Lost packets do not make a rate count as low.
     ///
     /// A message with a sufficient rate is not requested, so that no rate of a shared link is lowered.
     pub fn due(
@@ -109,7 +110,8 @@ impl Requests {
         }
     }
 
-    /// Measures the rate of the received messages, because acknowledgements may be lost.
+    /// Requests again the rates that are too low. They are measured from the received messages, because
+    /// acknowledgements may be lost.
     fn ask_rates(
         &mut self,
         now_s: f64,

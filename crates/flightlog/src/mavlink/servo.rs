@@ -5,7 +5,8 @@ use crate::{Motor, parameters::Parameters, px4};
 /// The number of outputs of a port.
 pub(crate) const OUTPUTS_A_PORT: usize = 16;
 
-/// The port of an output (from 1), which for PX4 is its bank (0 MAIN, 1 AUX), and the index of the output in it.
+/// The port of an output (numbered from 1), and the index of the output in that port. The ports of PX4 are its banks:
+/// 0 is MAIN, 1 is AUX.
 pub(crate) fn bank(output: u16) -> (u8, usize) {
     let index = usize::from(output.saturating_sub(1));
     let port = u8::try_from(index / OUTPUTS_A_PORT).unwrap_or(u8::MAX);

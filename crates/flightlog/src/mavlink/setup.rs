@@ -1,5 +1,5 @@
-//! The outputs that drive the motors of a live vehicle and their limits, from its parameters, and the names of the
-//! parameters that are needed.
+//! Determines the outputs that drive the motors of a live vehicle, and their limits, from its parameters; lists the
+//! parameters that are still needed.
 
 use super::outputs::{KnownOutputs, motors_expected};
 use super::servo::{OUTPUTS_A_PORT, bank, field, px4_motors};
@@ -165,8 +165,8 @@ fn wanted_of_ardupilot(parameters: &Parameters, vehicle: &Vehicle) -> Vec<String
     names
 }
 
-/// Before PARAM_ERROR existed, PX4 did not answer requests for missing parameters, so functions are requested until all
-/// motors are found.
+/// The parameters of PX4 to request. Before PARAM_ERROR existed, PX4 did not answer requests for missing parameters,
+/// so functions are requested until all motors are found.
 fn wanted_of_px4(parameters: &Parameters, vehicle: &Vehicle) -> Vec<String> {
     let motors = px4_motors(parameters);
     let count = "CA_ROTOR_COUNT".to_owned();

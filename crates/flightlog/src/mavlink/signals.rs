@@ -228,7 +228,7 @@ pub(crate) const SPECS: &[MessageSpec] = &[
 
 const BATTERY_STATUS: u32 = 147;
 
-/// The position in [`SPECS`] of the message with this id. Only the first battery has signals.
+/// The index in [`SPECS`] of the message with this id. Only the first battery has signals.
 pub(crate) fn spec_of(id: u32, payload: &Payload) -> Option<usize> {
     let is_other_battery = id == BATTERY_STATUS && payload[32] != 0;
     let index = SPECS.iter().position(|spec| spec.id == id);

@@ -84,7 +84,7 @@ impl Stream {
     }
 
     /// Returns the next packet; `None` until more bytes arrive. Without a key, signed packets are counted and skipped;
-    /// with a key, all packets that are not genuine are.
+    /// with a key, unsigned packets and packets that are not genuine are counted and skipped.
     ///
     /// A packet with an unknown message is returned as well, for recording. Its [`Packet::sound`] is `None`, because
     /// its checksum cannot be verified.

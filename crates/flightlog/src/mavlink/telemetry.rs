@@ -46,7 +46,8 @@ pub(super) const RATED: [u32; 10] = [
 /// The number of messages at the start of [`RATED`] that are always requested.
 const ALWAYS: usize = 3;
 
-/// The number of ports of SERVO_OUTPUT_RAW. The second port has ArduPilot's outputs from 17 on, and PX4's AUX outputs.
+/// The number of ports of SERVO_OUTPUT_RAW. The second port has the outputs 17 to 32 of ArduPilot, or the AUX outputs
+/// of PX4.
 const PORTS: usize = 2;
 /// The pulse widths of all outputs at a time, in us.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -67,7 +68,7 @@ const CLOCK_SILENT_S: f64 = 2.0;
 struct LiveClock {
     clock: Clock,
     heard_s: Option<f64>,
-    /// The latest stamp as received: a repeated packet does not confirm a timestamp.
+    /// The latest stamp as received, to detect repeated packets, which do not confirm a timestamp.
     stamp: Option<u32>,
 }
 
@@ -159,8 +160,8 @@ pub struct Telemetry {
 #[derive(Debug)]
 struct LatestSignal {
     name: String,
-    /// The position in [`SPECS`] of the message that contained the value; a message at a later
-    /// position does not replace the value.
+    /// The index in [`SPECS`] of the message that contained the value; a message with a larger index does not replace
+    /// the value.
     spec: usize,
     /// The value; NaN is unknown.
     value: f64,
@@ -181,7 +182,7 @@ impl LatestSignal {
 }
 
 impl Telemetry {
-    /// Starts from the heartbeat that [`vehicle_of`](super::vehicle_of) identified the vehicle by.
+    /// Starts from the heartbeat by which [`vehicle_of`](super::vehicle_of) identified the vehicle.
     pub fn new(heartbeat: &Packet<'_>, vehicle: Vehicle) -> Telemetry {
         let mut decoder = Decoder::live();
         decoder.message(heartbeat.component, heartbeat.id, &filled(heartbeat));
@@ -252,9 +253,9 @@ impl Telemetry {
         self.decoder.is_in_air_or_armed()
     }
 
-    /// Whether the vehicle reports at `now_s` of the receiver's clock that it is in the air. `None` if it is only
-    /// armed, if its landed state (EXTENDED_SYS_STATE) is older than 1.5 s, and while its motors are stopped on
-    /// purpose.
+    /// Whether the vehicle reports that it is in the air, at `now_s` of the receiver's clock. `None` if it is armed
+    /// but does not report a landed state (EXTENDED_SYS_STATE), if that state is older than 1.5 s, or if the motors
+    /// were stopped on purpose.
     pub fn reported_in_air(&self, now_s: f64) -> Option<bool> {
         let is_fresh = |heard_s: f64| now_s - heard_s <= LANDED_FRESH_S;
         match self.is_in_air() {
@@ -395,8 +396,8 @@ impl Telemetry {
         TelemetryChange::Nothing
     }
 
-    /// Attitude messages have a separate clock, which continues for 49 days, while the clock of the commands wraps
-    /// around.
+    /// Detects a reboot by the clock of attitude messages, which wraps around after 49 days, unlike the clock of the
+    /// commands, which does so after 71 minutes.
     fn check_boot(&mut self, boot_ms: u32, now_s: f64) -> TelemetryChange {
         let clock = &mut self.boot_clock;
         if clock.stamp.replace(boot_ms) == Some(boot_ms) {

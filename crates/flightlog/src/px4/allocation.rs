@@ -52,8 +52,8 @@ impl Allocation {
         self.parts.len()
     }
 
-    /// The commands, clipped to 0..1; NaN if a set point is unknown. If a command is clipped, PX4 lowers the set points
-    /// instead, so the commands of the other motors are estimates.
+    /// The commands, clipped to 0..1; NaN if a set point is unknown. PX4 does not clip commands but lowers the set
+    /// points, so the commands of the other motors are estimates if one is clipped.
     pub(crate) fn commands(&self, set_points: [f64; AXES]) -> impl Iterator<Item = f64> {
         self.parts.iter().map(move |parts| {
             let products = parts.iter().zip(set_points).map(|(part, set)| part * set);

@@ -14,7 +14,7 @@ use crate::{
     Event, Flight, Format, Intervals, Options, Report, Series, VehicleKind, identity, px4,
 };
 
-/// The longest pause of telemetry while the link is lost, in seconds; a time further ahead is damage.
+/// The longest pause of telemetry while the link is lost, in seconds; a time further ahead is damaged.
 const LONGEST_PAUSE_S: f64 = 3600.0;
 
 pub(super) struct Collector<'o> {

@@ -1,6 +1,6 @@
 //! Reads MAVLink telemetry logs (`.tlog`): each packet, of version 1 or 2, is preceded by microseconds since 1970 (8
-//! bytes, big-endian). The times of a flight are those of the vehicle's clock, which the motor commands contain. If the
-//! commands contain no times, they are the times of reception since the first packet.
+//! bytes, big-endian). The times of a flight are those of the vehicle's clock, which the motor commands contain. If
+//! the commands contain no times, the times of the flight are the times of reception, from 0 at the first packet.
 
 mod collect;
 mod time;
@@ -25,7 +25,7 @@ pub(crate) fn known_signals() -> impl Iterator<Item = (&'static str, &'static st
     signals.map(|(_, name, unit)| (*name, *unit))
 }
 
-/// Whether a timestamp and a packet with a right checksum begin at one of the first bytes.
+/// Whether a timestamp, followed by a packet with a right checksum, begins at one of the first bytes.
 pub(crate) fn looks_like(start: &[u8]) -> bool {
     let start = &start[..start.len().min(16 * LONGEST)];
     (0..start.len()).any(|at| {
@@ -104,7 +104,7 @@ fn believed(bytes: &[u8]) -> Option<(u64, Packet<'_>)> {
     believed.then_some((stamp_us, packet))
 }
 
-/// The offset of the next record that is certain.
+/// The offset of the next record that is certainly not damaged.
 fn next(bytes: &[u8]) -> usize {
     let starts = |at: &usize| {
         bytes

@@ -10,7 +10,7 @@ const BOOT_MS: [u32; 2] = [30, 83];
 /// seconds.
 const LATE_S: f64 = 5.0;
 
-/// The clock of one vehicle: the clock of its motor commands, interpolated between them with the time of reception.
+/// The clock of one vehicle: the times in its motor commands, continued after each by the time of reception.
 #[derive(Default)]
 pub(super) struct VehicleTime {
     clock: Clock,

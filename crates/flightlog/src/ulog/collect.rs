@@ -13,11 +13,11 @@ use crate::parameters::Parameters;
 use crate::signal::preferred;
 use crate::{Commands, Event, Flight, Format, Intervals, Options, Report, Series, identity, px4};
 
-/// A time this far after all earlier times is damaged, unless the next one agrees, in seconds.
+/// A time that is later than all earlier times by more than this, in seconds, is damaged unless the next one agrees.
 const LONGEST_PAUSE_S: f64 = 60.0;
 /// The number of logged values in an outputs message.
 const OUTPUTS: usize = 16;
-/// Set points of the rate controllers.
+/// The topic with the torque set points that the rate controllers output.
 const TORQUE: &str = "vehicle_torque_setpoint";
 const THRUST: &str = "vehicle_thrust_setpoint";
 /// Index of the thrust along z.

@@ -46,7 +46,7 @@ fn kind_of(name: &str) -> Option<NumberType> {
     })
 }
 
-/// A typed value: the number after a key such as `float MPC_THR_HOVER`, with its name.
+/// The name in a typed key such as `float MPC_THR_HOVER`, and the number in `value`.
 pub(super) fn keyed_number<'k>(key: &'k str, value: &[u8]) -> Option<(&'k str, f64)> {
     let (kind, name) = key.split_once(' ')?;
     let field = NumericField {
@@ -78,7 +78,7 @@ impl Formats {
         Ok(())
     }
 
-    /// The size of a topic as it is logged, in bytes: with its padding, except at the end.
+    /// The size of a topic as it is logged, in bytes: with padding, except for padding at its end.
     pub(super) fn logged_size(&self, topic: &str) -> Option<usize> {
         let fields = self.topics.get(topic)?;
         let padding = |field: &&Member| field.name.starts_with("_padding");
@@ -129,7 +129,7 @@ impl Formats {
     }
 }
 
-/// `type name` or `type[count] name`.
+/// Parses `type name` or `type[count] name`.
 fn member(text: &str) -> Option<Member> {
     let (kind, name) = text.trim().split_once(' ')?;
     let (kind, count) = match kind.split_once('[') {

@@ -1,4 +1,4 @@
-//! Reads PX4 ULog files: a head, and messages of a length, a letter and a body
+//! Reads PX4 ULog files: a head, then messages, each with a length, a letter and a body
 //! (<https://docs.px4.io/main/en/dev_log/ulog_file_format.html>).
 //!
 //! Messages have no checksum, so each is checked in other ways: its letter, the length of its topic, and whether
@@ -31,7 +31,7 @@ pub(crate) fn known_signals() -> impl Iterator<Item = (&'static str, &'static st
     signals.map(|(_, name, unit)| (*name, *unit))
 }
 
-/// Whether a file starts as ULog does; if its head is damaged, whether it contains the definition of a topic.
+/// Whether a file starts like a ULog file or, if its head is damaged, contains the definition of a topic.
 pub(crate) fn looks_like(start: &[u8]) -> bool {
     const DEFINITION: &[u8] = b":uint64_t timestamp;";
     start.starts_with(&MAGIC)

@@ -52,7 +52,7 @@ impl Outputs {
         self.values.chunks_exact(self.width.max(1))
     }
 
-    /// The number of values up to the last one that is ever finite.
+    /// The number of columns up to the last one that contains a finite value.
     pub(super) fn in_use(&self) -> usize {
         let used = |row: &[f32]| row.iter().rposition(|value| value.is_finite());
         self.rows()

@@ -9,7 +9,7 @@ use crate::signal::Label;
 /// The use of the messages of one topic.
 pub(super) enum TopicRole {
     Nothing,
-    /// Commands of motors or outputs: index in `outputs`.
+    /// Commands of motors or outputs: the index in `outputs`, and the fields of the commands.
     Outputs(usize, Vec<NumericField>),
     Status {
         arming: Option<NumericField>,

@@ -7,7 +7,8 @@ use super::{HEAD, SYNC};
 #[derive(Default)]
 pub(super) struct Topics {
     pub(super) formats: Formats,
-    /// The length of the messages of each number, including the number itself; 0 if it is unknown.
+    /// For each topic number, the length of its messages in bytes, including the number itself: 0 if it is unknown,
+    /// `None` if the topic was not announced.
     lengths: Vec<Option<u16>>,
 }
 

@@ -1,4 +1,4 @@
-//! The interval in which a membership function changes, which is the range of a variable without one.
+//! The interval in which a membership function changes. It becomes the range of a variable that has none.
 
 use fuzzy::model::MembershipFunction;
 

@@ -1,4 +1,4 @@
-//! Splits FCL into names, numbers and signs, without comments.
+//! Splits FCL into names, numbers and symbols, without comments.
 
 /// The words of a text. Comments extend from `//` to the end of the line, and between `/*` and `*/` or `(*` and `*)`.
 pub(super) fn words(text: &str) -> Vec<&str> {
@@ -34,7 +34,7 @@ fn comment(rest: &str) -> Option<usize> {
         .or_else(|| until("(*", "*)"))
 }
 
-/// The length of a number. `1..2` consists of a number, two points and a number.
+/// The length of a number. `1..2` consists of a number, two dots and a number.
 fn number(rest: &str) -> Option<usize> {
     let bytes = rest.as_bytes();
     let digits = |mut at: usize| {

@@ -53,9 +53,9 @@ pub(super) struct Reader<'r, 't> {
     /// Whether the terms that are read compute values, which depends on the `METHOD` after them.
     pub(super) computes: bool,
     pub(super) blocks: Vec<Block>,
-    /// The section that is read, for messages.
+    /// The current section, for messages.
     section: String,
-    /// Whether the premature end of the text was reported. Missing parts are then not reported as well.
+    /// Whether the premature end of the text was reported. If so, missing parts are not reported.
     is_cut_off: bool,
 }
 
@@ -258,7 +258,7 @@ impl<'r, 't> Reader<'r, 't> {
     }
 }
 
-/// fuzzylite writes no `;` after a rule.
+/// Whether the text is in fuzzylite's dialect, in which rules have no `;` at their end.
 fn is_fuzzylite(words: &[&str]) -> bool {
     let mut pairs = words.iter().zip(words.iter().skip(1));
     pairs.any(|(last, word)| word.eq_ignore_ascii_case("END_RULEBLOCK") && *last != ";")

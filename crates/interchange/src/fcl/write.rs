@@ -240,7 +240,7 @@ fn shape(
     }
 }
 
-/// Reports that a term is a function.
+/// Notes that a term is a function, which IEC 61131-7 does not define.
 fn function(draft: &mut TextDraft, term: &Term, variable: &Variable) {
     let name = named(term, variable);
     let message = format!("the term {name} is a function, which IEC 61131-7 does not define");

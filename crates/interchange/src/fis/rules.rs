@@ -1,5 +1,5 @@
-//! Reads rules of FIS, such as `1 -2, 3 (0.5) : 1`: the number of a term for each input, a comma, one for each output,
-//! the weight, and 1 for AND or 2 for OR. A negative number means NOT, 0 omits the variable.
+//! Reads rules of FIS, such as `1 -2, 3 (0.5) : 1`: the number of a term for each input, a comma, the number of a term
+//! for each output, the weight, and 1 for AND or 2 for OR. A negative number means NOT, 0 omits the variable.
 
 use fuzzy::{
     format::RuleSpans,
@@ -221,8 +221,9 @@ fn proposition(
     }))
 }
 
-/// The hedges of Octave's toolkit, given by the digits after the decimal point, in hundredths. Its `extremely` is a
-/// cube: the square times the degree, which is expressed as a product of conditions.
+/// The hedges of Octave's toolkit, from the digits after the decimal point, in hundredths. Octave's `extremely` cubes
+/// the degree; it is read as the square of the degree AND the degree, if AND is the product. The second result is
+/// whether that AND is needed.
 fn octave(
     draft: &mut ModelDraft<'_>,
     word: &str,

@@ -224,7 +224,7 @@ fn shape(
     written
 }
 
-/// Why a rule about an output cannot be written.
+/// The reason why a rule with a condition about an output cannot be written.
 const READS_OUTPUT: &str = "has a condition about an output";
 
 /// Writes a rule: `1 -2, 3 (0.5) : 1`.

@@ -1,4 +1,4 @@
-//! Implicit rules of fuzzylite, which apply to all formats.
+//! Implicit conventions of fuzzylite, which apply to FLL and to fuzzylite's dialect of FCL.
 
 use fuzzy::{
     format::{TermSpans, VariableSpans},
@@ -7,7 +7,7 @@ use fuzzy::{
 
 use crate::{model_draft::ModelDraft, shapes};
 
-/// A weighted average over fuzzy sets is Tsukamoto's: fuzzylite derives the kind from the terms.
+/// Makes a weighted average of fuzzy sets a Tsukamoto defuzzifier, as fuzzylite does according to the terms.
 pub(crate) fn tsukamoto(output: &mut Output) {
     if output.defuzzifier == Defuzzifier::WeightedAverage
         && !output.variable.terms.iter().any(shapes::is_computed)

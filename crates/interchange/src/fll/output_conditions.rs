@@ -1,5 +1,6 @@
 //! Conditions on outputs. In fuzzylite, the degree of such a condition is that of the earlier rules that conclude the
-//! term; degrees are passed on, not the value. So the condition is replaced by the conditions of those rules.
+//! term: a degree is passed on, not the value of the output. The condition is therefore replaced by the conditions of
+//! those rules.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,7 +11,8 @@ use fuzzy::{
 
 use crate::model_draft::ModelDraft;
 
-/// The maximum number of propositions that replace conditions on outputs: a rule may repeat what earlier rules repeat.
+/// The maximum number of propositions that replace conditions on outputs. Without a limit, a chain of rules that read
+/// outputs could multiply them.
 const MOST_PROPOSITIONS: usize = 100_000;
 
 pub(crate) fn replace(draft: &mut ModelDraft<'_>) {
@@ -64,7 +66,7 @@ pub(crate) fn replace(draft: &mut ModelDraft<'_>) {
     }
 }
 
-/// The rules that conclude each term of each output, in their order.
+/// For each term of each output, the indices of the rules that conclude it, ascending.
 type ConcludingRules = BTreeMap<(String, String), Vec<usize>>;
 
 fn concluding_rules(model: &Model) -> ConcludingRules {

@@ -106,7 +106,8 @@ fn xml_mistake(error: &roxmltree::Error) -> (String, String) {
 /// The maximum number of attributes of an element, because each is compared with the others.
 const MOST_ATTRIBUTES: usize = 1000;
 
-/// The maximum number of namespace declarations, because each element with one copies those of the elements around it.
+/// The maximum number of namespace declarations, because each element with a declaration copies the declarations of
+/// all elements around it.
 const MOST_NAMESPACES: usize = 100;
 
 /// The maximum depth of nested elements.

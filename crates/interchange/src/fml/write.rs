@@ -135,7 +135,7 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<WriteResult, Findin
     draft.finish()
 }
 
-/// The kind of outputs that a rule base concludes.
+/// The kind of the outputs of a rule base.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum RuleBaseKind {
     Mamdani,

@@ -10,7 +10,7 @@ use crate::{
 
 use super::{Consequents, structure::Structure};
 
-/// The ridge, relative to the largest curvature. It pulls consequents that are supported by few rows to the mean.
+/// The ridge, as a share of the diagonal elements. It pulls consequents that are supported by few rows to the mean.
 pub(super) const RIDGE: f64 = 1e-3;
 
 /// The sums for least squares, over some rows.

@@ -60,7 +60,7 @@ pub struct Identification {
     pub max_rules: usize,
     /// The minimum relative reduction of the cross-validation error by a step.
     pub min_gain: f64,
-    /// The minimum number of rows in which a rule fires more strongly than any other; rules with fewer rows are
+    /// The minimum number of rows at which a rule fires more strongly than any other; rules with fewer such rows are
     /// omitted.
     pub least_support: usize,
     /// The number of folds for choosing a step.
@@ -112,10 +112,11 @@ pub struct IdentifyStep {
     pub left_out: f64,
 }
 
-/// A step must also reduce the error by this share of the error of the mean: smaller reductions are irrelevant.
+/// A step must also reduce the error by this share of the error of predicting the mean: smaller reductions are
+/// irrelevant.
 const LEAST_GAIN_OF_ALL: f64 = 1e-3;
 
-/// The radii that are tried, as shares of the ranges.
+/// The radii of clusters that are tried, as shares of the ranges.
 const RADII: [f64; 4] = [0.3, 0.5, 0.7, 1.0];
 
 /// The maximum number of candidate columns, because each step of the search tries all of them.

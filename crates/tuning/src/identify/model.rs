@@ -17,7 +17,7 @@ use super::{
     structure::{Axis, Structure},
 };
 
-/// The names of terms, by their number, from 2 on.
+/// The names of the terms of an input with two, three, four and five terms.
 const NAMES: [&[&str]; 4] = [
     &["low", "high"],
     &["low", "medium", "high"],

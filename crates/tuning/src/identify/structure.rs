@@ -21,7 +21,7 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// The two terms that a value may belong to, with its degrees.
+    /// The two terms that a value may belong to, each with the degree of the value.
     fn degrees(&self, x: f64) -> [(usize, f64); 2] {
         let right = self.peaks.partition_point(|peak| *peak < x);
         let last = self.peaks.len() - 1;
@@ -76,7 +76,7 @@ impl Structure {
         }
     }
 
-    /// The index of the term on each axis that a rule of a grid has.
+    /// For each axis, the index of the term in a rule of a grid.
     pub(super) fn terms(axes: &[Axis], mut rule: usize) -> Vec<usize> {
         let mut terms: Vec<usize> = Vec::with_capacity(axes.len());
         for axis in axes.iter().rev() {

@@ -37,8 +37,8 @@ pub struct IdentifyValidation {
     pub without_value: usize,
 }
 
-/// For each fold in turn, identifies a model on the other rows and predicts the fold. The structure is searched for
-/// each time. `watch` is called with the index of each fold; on `Break` there is no result.
+/// For each fold in turn, identifies a model on the other rows, including its structure, and predicts the fold.
+/// `watch` is called with the index of each fold; on `Break` there is no result.
 ///
 /// # Errors
 /// As [`identify`].
@@ -114,7 +114,7 @@ pub fn cross_validate(
     }))
 }
 
-/// Predicts rows by the linear regression on other rows, as one rule that always fires.
+/// Predicts rows by a linear regression on other rows, which is fitted as one rule that always fires.
 fn line(known: &Data, rows: &Data) -> Vec<f64> {
     let varies = |input: &usize| {
         let (low, high) = range(&known.inputs[*input]);

@@ -341,7 +341,8 @@ fn consequents(derived: &DerivedRule) -> String {
     texts.collect::<Vec<String>>().join(" AND ")
 }
 
-/// The subsets of at least two of `count` ordered members.
+/// The subsets of `count` ordered members that have at least two members; only runs of neighbours if `count` exceeds
+/// [`MOST_FOR_ALL_SUBSETS`].
 fn subsets(count: usize) -> Vec<Vec<usize>> {
     if count <= MOST_FOR_ALL_SUBSETS {
         let bits = 0_u32..1 << count;

@@ -227,8 +227,8 @@ pub fn simplify(
     })
 }
 
-/// The disjunctions to try. Others than the author's are tried only if no rule contains an OR, whose meaning would
-/// change.
+/// The disjunctions to try. Other disjunctions than the author's are tried only if no rule contains an OR, because
+/// they would change the meaning of that OR.
 fn disjunctions(model: &Model) -> Vec<Disjunction> {
     let own = model.operators.or;
     let mut found = vec![own];

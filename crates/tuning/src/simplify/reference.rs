@@ -79,7 +79,8 @@ impl ReferenceOutputs {
     }
 
     /// The largest difference at all points and its location; the inner `None` means that there is no difference. The
-    /// outer `None` means that it exceeds the tolerance, or that rules fire at a point in only one of the two.
+    /// outer `None` means that a difference exceeds the tolerance, or that rules fire at a point in only one of the
+    /// models.
     pub(crate) fn examine(&mut self, model: &Model) -> Option<Option<Difference>> {
         let tolerances = self.tolerances.clone();
         let difference = self.compare(model, &tolerances, self.len())?;

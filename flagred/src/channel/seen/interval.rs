@@ -5,9 +5,9 @@ use fuzzy::engine::Interval;
 use super::{Channel, ChannelState, Input, Statistic, value};
 use crate::{moments::Moments, sampling_error::SampledMean};
 
-/// The two-sided interval of 95 % of the statistic of an input, for a signal whose character does not change within the
-/// window; docs/profiles.md defines it. `None` if no value is known, and for an exponential window, which does not keep
-/// its values.
+/// The two-sided 95 % interval of the statistic of an input, for a signal whose mean and variability do not change
+/// within the window; docs/profiles.md defines it. `None` if no value is known, and for an exponential window, which
+/// does not keep its values.
 pub(crate) fn interval(
     (channels, inputs): (&[Channel], &[Input]),
     seen: &[ChannelState],
@@ -168,8 +168,8 @@ mod tests {
         }
     }
 
-    /// A signal with a time constant of 0.2 s, known every millisecond. Of its mean over the window, samples at 50 Hz show
-    /// more than as many independent values.
+    /// Samples at 50 Hz of a signal with a time constant of 0.2 s, whose mean is computed over all milliseconds. Such
+    /// samples determine this mean more precisely than the same number of independent samples.
     #[test]
     fn the_mean_over_all_times_is_in_the_interval_of_the_samples() {
         let (mut inside, mut width, mut independent) = (0, 0.0, 0.0);

@@ -70,8 +70,8 @@ proptest! {
         prop_assert_ne!(hidden.verdict, Verdict::Known(Level::Good));
     }
 
-    /// Trouble that occurs only while a motor is unknown, for moments that together are more than a sixteenth of the time, is
-    /// not hidden by the known time in between. Here they are at least 3 of 40 s.
+    /// Trouble occurs only in short periods in which a motor is unknown; together they are more than a sixteenth of the
+    /// time (here at least 3 of 40 s). Known time in between does not hide the trouble.
     #[test]
     fn moments_without_a_motor_do_not_hide_a_failure(
         motor in 0..4usize,

@@ -85,7 +85,7 @@ fn every_known_risk_is_in_its_interval() {
     }
 }
 
-/// The bounds are guaranteed: no values of the inputs within their intervals have a risk outside.
+/// The bounds are guaranteed: the risk is within them for all values of the inputs within their intervals.
 #[test]
 fn no_inputs_within_their_intervals_have_a_risk_outside() {
     for estimator in profiles() {

@@ -76,7 +76,8 @@ rules: [IF level IS any THEN need IS by_level AND pump IS by_need]
     assert_eq!((outcomes[0].clamped, outcomes[1].clamped), (false, true));
 }
 
-/// `x` below 4 determines `a`, `a` determines `b`, and `b` and `x` determine `c`.
+/// Returns an engine in which a value of `x` below 4 determines `a`, `a` determines `b`, and `b` and `x` determine
+/// `c`.
 fn three(a: &str, c: &str) -> Engine {
     engine(&alloc::format!(
         "
@@ -268,7 +269,8 @@ fn any_operators() -> impl Strategy<Value = Operators> {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Compares one model with a chain to two models with the value passed by hand.
+    /// Compares a model with a chain to two separate models, where the output of the first model is an input of the
+    /// second.
     #[test]
     fn a_chain_has_the_bits_of_two_models_in_a_row(
         mut first in any_stage(&["x", "y"], "mid"),

@@ -35,8 +35,8 @@ impl RangedLiteral {
         }
     }
 
-    /// Returns the positions between which the degree is linear; `None` for a curved term, hedges, a step and an interval
-    /// type-2 term.
+    /// Returns the positions between which the degree is linear; `None` for a literal with hedges, and for a term that
+    /// is curved, has a step or is an interval type-2 term.
     pub(super) fn corners(&self) -> Option<Vec<f64>> {
         let term = self.term.as_ref()?;
         let corners = term.membership_function.corners()?;
@@ -75,14 +75,14 @@ impl RangedLiteral {
     }
 }
 
-/// Returns the positions of extrema and steps, and their neighbouring numbers, at which the degrees at a step are the
-/// limits from both sides.
+/// Returns the positions of extrema and steps, each with the next smaller and the next larger number. The degrees at
+/// these two numbers are the limits from both sides of a step.
 fn cuts(function: &MembershipFunction) -> Vec<f64> {
     let cuts = function.cuts().into_iter();
     cuts.flat_map(|x| [x.next_down(), x, x.next_up()]).collect()
 }
 
-/// Returns the smallest and the largest degree of the values in an interval. `cuts` are those of [`cuts`].
+/// Returns the smallest and the largest degree of the values in an interval. `cuts` is the result of [`cuts`].
 fn range(function: &MembershipFunction, cuts: &[f64], low: f64, high: f64) -> (f64, f64) {
     use MembershipFunction as F;
     let alone = |function: F| range(&function, &[], low, high);

@@ -163,7 +163,7 @@ struct Search<'s> {
 struct Part {
     inputs: Vec<Interval>,
     known: OutputBounds,
-    /// How far out the bound of the searched end is, as [`End::of`] returns it. The part with the largest urgency is
+    /// The bound of the searched end in this part, as [`End::of`] returns it. The part with the largest value is
     /// divided first.
     urgency: f64,
     scores: Vec<f64>,

@@ -94,7 +94,7 @@ fn invalid_intervals_are_errors() {
     ));
 }
 
-/// Votes that are products of terms of different inputs, as in many rule sets of this kind.
+/// Tests rules whose firing strengths are products of degrees of different inputs and are summed for each term.
 #[test]
 fn votes_have_exact_bounds() {
     let outputs = |defuzzifier: &str| {

@@ -21,8 +21,9 @@ const MOST_VERTICES: usize = 4096;
 pub(super) struct Vertices {
     /// The corners of the terms of each input.
     corners: Vec<Vec<f64>>,
-    /// For each output of the model, the largest error at a coverage of 1 because strengths below the least strength
-    /// count as 0; `None` if the extremes may be elsewhere.
+    /// For each output of the model, the maximum error at a coverage of 1; the error is inversely proportional to the
+    /// coverage. It arises because strengths below the least firing strength count as 0. `None` if the extremes may
+    /// not be at vertices.
     errors: Vec<Option<f64>>,
 }
 
@@ -111,8 +112,8 @@ impl Search<'_> {
     }
 }
 
-/// Returns the ratio of the largest and the smallest area of the terms of an output that is a quotient of sums of its
-/// firing strengths; `None` for any other output.
+/// Returns the ratio of the largest to the smallest area of the terms of an output, or 1 for a weighted average of
+/// constants. `None` if the output is not a quotient of sums of its firing strengths.
 fn ratio_of_areas(table: &OwnedTable, output: &Output) -> Option<f64> {
     let range = output.first as usize..output.end as usize;
     match output.form() {

@@ -1,4 +1,4 @@
-//! The causes of a risk: what a pilot reads about each rule.
+//! The causes of a risk: the texts for the pilot about each rule.
 
 use flagred::{estimator::Estimator, flight::Words, source::Signal};
 use fuzzy::{
@@ -8,7 +8,7 @@ use fuzzy::{
 
 use super::{number, quoted, template::TemplateValues};
 
-/// The causes of the rules; for causes that are other outputs, also the rules that conclude these outputs.
+/// For each rule, the cause that a pilot reads. If the cause is another output, also the rules that conclude this output.
 #[derive(Default)]
 pub(super) struct Causes {
     motor_cause: bool,
@@ -17,9 +17,9 @@ pub(super) struct Causes {
 }
 
 impl Causes {
-    /// Adds the next rule: its consequent for the risk, and the input that distinguishes it. If another output
-    /// distinguishes the rule, the cause is the rule that contributes most to that proposition. A rule without a
-    /// number has no effect on the risk.
+    /// Adds the next rule: its consequent for the risk, and the input that distinguishes it. If the distinguishing
+    /// proposition reads another output, the cause is the rule that contributes most to that proposition.
+    /// `number_of_rule` is `None` if the rule has no effect on the risk.
     pub(super) fn add(
         &mut self,
         estimator: &Estimator,
@@ -74,8 +74,8 @@ fn output_named<'e>(estimator: &'e Estimator, name: &str) -> Option<&'e Variable
     Some(&output.variable)
 }
 
-/// Returns the rules that conclude the output of a proposition, each as its number and a degree: the degree of the
-/// proposition if only this rule fires.
+/// Returns the rules that conclude the output of a proposition, each as its number and the degree that the proposition
+/// has if only this rule fires.
 fn leads(estimator: &Estimator, proposition: &Proposition) -> String {
     // The smallest degree, so that, as in the monitor, the strongest rule is chosen if the degree is 0 for all rules.
     const NOT_AT_ALL: f64 = 1e-9;

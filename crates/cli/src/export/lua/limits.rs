@@ -9,28 +9,29 @@ const LOCALS: usize = 90;
 const CONDITIONS: usize = 100;
 /// Maximum number of instructions of a call. `SCR_VM_I_COUNT` is 10,000 by default.
 const INSTRUCTIONS: usize = 9_900;
-/// Maximum memory of a script. `SCR_HEAP_SIZE` is 204,800 by default on boards with much memory. With 64-bit pointers, as in the
-/// simulator, ArduPilot itself takes 25,000 of it, and loading a script temporarily takes 11,000 more.
+/// Maximum memory of a script in bytes. `SCR_HEAP_SIZE` is 204,800 bytes by default on boards with much memory. With 64-bit
+/// pointers, as in the simulator, ArduPilot itself takes 25,000 bytes of it, and loading a script temporarily takes 11,000
+/// bytes more.
 const HEAP_BYTES: usize = 166_000;
 
 /// The sizes of the parts of a script that depend on the profile.
 #[derive(Debug, Default)]
 pub(super) struct Size {
-    /// Local variables of the function that processes a sample.
+    /// The number of local variables of the function that processes a sample.
     pub(super) locals: usize,
     /// The largest number of conditions in a rule.
     pub(super) conditions: usize,
     pub(super) windows: usize,
-    /// Statistics of windows.
+    /// The number of statistics of windows.
     pub(super) rows: usize,
-    /// Numbers that windows store.
+    /// The number of numbers that windows store.
     pub(super) numbers: usize,
     pub(super) rules: usize,
-    /// Terms of inputs.
+    /// The number of terms of inputs.
     pub(super) terms: usize,
-    /// Values at the knots of filled gaps.
+    /// The number of values at the knots of filled gaps.
     pub(super) filled: usize,
-    /// Characters of code that stays in memory, without comments and indentation.
+    /// The number of characters of code that stays in memory, without comments and indentation.
     pub(super) code: usize,
 }
 

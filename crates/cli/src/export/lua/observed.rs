@@ -1,4 +1,5 @@
-//! The values of a sample: which of them the script computes, each once, and which of them enter the windows.
+//! Generates the code for the values of a sample. The script computes each value that it needs once, and adds values to
+//! the windows.
 
 use std::fmt::Write;
 
@@ -12,7 +13,7 @@ use super::{frames, number, template::TemplateValues};
 /// Rounding error of commands in 32 bits.
 const ROUNDING: f64 = 1e-6;
 
-/// Results of smaller divisors, which may be infinite in 32 bits, are reported as unknown.
+/// The smallest divisor of a ratio. Ratios with smaller divisors may be infinite in 32 bits and are reported as unknown.
 const LEAST_DIVISOR: f64 = 1e-6;
 
 const AXES: [&str; 4] = ["roll", "pitch", "yaw", "thrust"];
@@ -33,7 +34,8 @@ pub(super) struct Script {
 }
 
 impl Script {
-    /// Returns the value of a sample for a channel, and the spread of the values within a sample, if there is one.
+    /// Returns the code for the value of a channel in a sample. For a standard deviation pooled over the motors, also
+    /// returns the code for the variance between the motors within the sample.
     pub(super) fn value(
         &mut self,
         channel: &Channel,
@@ -251,8 +253,8 @@ impl Script {
     }
 }
 
-/// Returns the code that a window sums up: the value, its square, or for a share whether the value is beyond the
-/// threshold.
+/// Returns the expression that a window sums: the value, its square or, for a share, whether the value is beyond the
+/// threshold (1 or 0).
 fn counted(value: &str, threshold: Option<Threshold>, squared: bool) -> String {
     let beyond = |sign: &str, limit: f64| {
         format!(

@@ -23,9 +23,9 @@ use super::{
 /// Outputs that are computed in one pass, with their tables.
 struct Stage<'a> {
     table: Table<'a>,
-    /// The indices in the model of the outputs.
+    /// The indices of the outputs in the model.
     outputs: Vec<usize>,
-    /// The indices in the model of the rules.
+    /// The indices of the rules in the model.
     rules: Vec<usize>,
 }
 
@@ -123,7 +123,7 @@ pub(super) fn fill(
 
 /// The code that fires a rule for an output.
 struct FiringCode {
-    /// Whether the firing strength is added, instead of the largest one being kept.
+    /// Whether the firing strengths are added; otherwise the largest one is kept.
     adds: bool,
     lines: [String; 2],
 }

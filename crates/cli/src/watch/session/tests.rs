@@ -41,7 +41,7 @@ pub(crate) fn quadrotor(in_air: bool) -> MavMessage {
     })
 }
 
-/// Four motor commands at a time of the vehicle's clock, which wraps every 71 minutes.
+/// Four motor commands with a timestamp of the vehicle's clock, which wraps every 71 minutes.
 pub(crate) fn servo(t_s: f64, pulses_us: [u16; 4]) -> MavMessage {
     let [servo1_raw, servo2_raw, servo3_raw, servo4_raw] = pulses_us;
     MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {

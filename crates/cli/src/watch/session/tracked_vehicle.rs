@@ -339,7 +339,7 @@ impl TrackedVehicle {
     }
 }
 
-/// Reports motors and limits, and that a given range is ignored, if it is.
+/// Reports motors and limits. Adds a note if a given range is ignored.
 fn ready(setup: &Setup, telemetry: &Telemetry, out: &mut SessionOutput) {
     out.events.push(Event::Ready {
         setup: setup.clone(),

@@ -14,7 +14,7 @@ pub(crate) type Source = Option<SocketAddr>;
 const BEATS: u32 = 3;
 /// Maximum time between two of these heartbeats, in seconds.
 const BEAT_WAIT_S: f64 = 5.0;
-/// Number of motor commands that prove a candidate while the vehicle that is followed sends none.
+/// Number of motor commands that confirm a candidate as a vehicle, while the vehicle that is followed sends none.
 const COMMANDS: u32 = 2;
 /// Maximum number of candidates: at least one per system.
 const CANDIDATES: usize = 256;

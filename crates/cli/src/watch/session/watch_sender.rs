@@ -13,11 +13,13 @@ const GONE_S: f64 = 5.0;
 const TELL_S: f64 = 5.0;
 /// Number of sent packets that are stored, to recognise those that a link returns.
 const ECHOES: usize = 16;
-/// PX4 repeats the latest value that it received as its own, within this time. This many values are stored for comparison.
+/// Seconds within which PX4 repeats the latest value that it received as its own.
 const ECHO_S: f64 = 5.0;
+/// Maximum number of stored values, to recognise those that PX4 repeats.
 const VALUES: usize = 32;
-/// Delay of a text that another watch should send, and the time before within which the other one may have sent it already.
+/// Delay in seconds of a text that another watch should send.
 const TEXT_WAIT_S: f64 = 1.0;
+/// A text is not sent if another watch sent one on the same topic within this many seconds before.
 const TEXT_HEARD_S: f64 = 2.0;
 /// Maximum number of delayed texts, and of texts received from others.
 const TEXTS: usize = 8;
@@ -26,7 +28,7 @@ const TEXTS: usize = 8;
 pub(super) struct WatchSender {
     /// `None` if the watch only listens.
     sender: Option<Sender>,
-    /// Whether it sends even if another watch sends.
+    /// Whether this watch sends values and texts even if another watch sends them.
     insists: bool,
     other: Option<OtherWatch>,
     told: Option<(f64, bool)>,
@@ -72,12 +74,13 @@ impl WatchSender {
         }
     }
 
-    /// Returns whether it may send requests.
+    /// Returns whether this watch may send requests.
     pub(super) fn asks(&self) -> bool {
         self.sender.is_some()
     }
 
-    /// Returns whether it sends values and texts: it has a sender, and no other watch has precedence.
+    /// Returns whether this watch sends values and texts: it has a sender, and it insists or no other watch has
+    /// precedence.
     pub(super) fn speaks(&self) -> bool {
         let yields = self.other.as_ref().is_some_and(|other| other.goes_first);
         self.sender.is_some() && (self.insists || !yields)
@@ -112,8 +115,8 @@ impl WatchSender {
         self.utter(to, message, out);
     }
 
-    /// Sends a text. If another watch has precedence, the text is delayed, and dropped if the other one sends a text on the same
-    /// topic. So a warning is sent in any case.
+    /// Sends a text. If another watch has precedence, the text is delayed, and dropped if the other watch sends a text on the
+    /// same topic. Therefore at least one of the two sends each warning.
     pub(super) fn warn(
         &mut self,
         now_s: f64,
@@ -154,9 +157,9 @@ impl WatchSender {
         self.values.push_front((now_s, value.to_bits()));
     }
 
-    /// Processes a packet of another watch of the vehicle. The watch that has been running longer has precedence. So do a program on the
-    /// autopilot itself, and a sender that reports no running time and was received before this watch sent a risk. An autopilot that
-    /// `echoes` repeats the values of others as its own.
+    /// Processes a packet of another watch of the vehicle. The watch that has been running longer has precedence. A program on
+    /// the autopilot itself also has precedence over this watch, as does a sender that reports no running time and was
+    /// received before this watch sent a risk. An autopilot that `echoes` repeats the values of others as its own.
     pub(super) fn hear(
         &mut self,
         now_s: f64,
@@ -235,7 +238,7 @@ impl WatchSender {
         }
     }
 
-    /// Forgets the other watches, which belong to another vehicle.
+    /// Forgets other watches and texts, because another vehicle is followed from now on.
     pub(super) fn forget(&mut self) {
         self.other = None;
         self.told = None;

@@ -36,8 +36,8 @@ impl RowCollector {
         refused.or_else(|| backwards.or_else(of_clock).filter(|_| !is_ours))
     }
 
-    /// An error for a column whose cells are mostly not pulse widths, because all motors would seem to be at a limit. A
-    /// few such cells count as damage.
+    /// An error for a column whose cells are mostly not pulse widths: if it were accepted, the motor would seem to be
+    /// at a limit all the time. A few such cells count as damage.
     pub(in crate::csv) fn other_unit(&self) -> Option<ReadError> {
         let mut columns = (1..).zip(&self.pulses);
         let (number, pulses) = columns.find(|(_, pulses)| pulses.outside > pulses.known / 2)?;
