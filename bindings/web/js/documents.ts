@@ -12,7 +12,7 @@ export interface AssumedInput {
 
 /** The cause of the risk when a level was reached: `verdict::Cause` by name. */
 export interface Cause {
-  /** The input that distinguishes the rule: the input of the proposition in its antecedent that the fewest rules share. */
+  /** The input that distinguishes the rule. Of the true propositions in the rule's antecedent, the one that the fewest rules share is about this input. */
   input: string;
   /** The value of that input. */
   value: number;
@@ -28,7 +28,7 @@ export type Change = {
   input: string;
   /** The value of the input at which the change takes effect. */
   at: number;
-  /** The difference between that value and the current one; negative if it is below. */
+  /** The value `at` minus the current value of the input. */
   by: number;
   effect: 'term';
   /** The term. */
@@ -38,7 +38,7 @@ export type Change = {
   input: string;
   /** The value of the input at which the change takes effect. */
   at: number;
-  /** The difference between that value and the current one; negative if it is below. */
+  /** The value `at` minus the current value of the input. */
   by: number;
   effect: 'rule';
   /** The name of the output. */
@@ -53,7 +53,7 @@ export type Change = {
 export interface Degree {
   /** The name of the term. */
   term: string;
-  /** The degree, in [0, 1]; of an interval type-2 term the upper one. */
+  /** The degree, in [0, 1]; for an interval type-2 term, the upper degree. */
   degree: number;
   /** The lower degree of an interval type-2 term; absent for any other term. */
   lower?: number | null;
@@ -110,7 +110,7 @@ export interface Explanation {
   outputs: ExplainedOutput[];
   /** The rules that do not fire. */
   silent?: SilentRule[] | null;
-  /** The nearest changes if one input changes. */
+  /** The nearest changes of the result if one input changes and the others do not. */
   changes?: Change[] | null;
 }
 
@@ -194,11 +194,11 @@ export interface FlightFinding {
   advice: string;
 }
 
-/** The number of moments that were followed by an attitude error over 5 degrees within 5 s. */
+/** How many of the moments were followed by an attitude error over 5 degrees within 5 s. */
 export interface Followed {
   /** The number of moments, one every 0.5 s. */
   moments: number;
-  /** The number of moments that were followed by such an error. */
+  /** The number of these moments that were followed by an attitude error over 5 degrees within 5 s. */
   followed: number;
 }
 
@@ -298,7 +298,7 @@ export interface MotorFinding {
 export interface NoticeSettings {
   /** The threshold on the noise of the commands: vibration, or gains that are too high. */
   noise: Limit | null;
-  /** The threshold on the reserve of the mean command to the upper limit. */
+  /** The threshold on the reserve, which is the distance of the mean command from the upper limit. */
   reserve: Limit | null;
   /** The threshold on the shift of a motor's command, relative to the mean command of all motors, since earlier in the flight. It is doubled for the difference of opposite motors, and halved if a single motor is higher than before. */
   imbalance: Limit | null;
@@ -308,7 +308,7 @@ export interface NoticeSettings {
 export interface Parameter {
   /** The name of the parameter. */
   name: string;
-  /** The first value, because failure tests and learning change parameters in flight. */
+  /** The first value, because failure tests and automatic tuning change parameters in flight. */
   value: number;
   /** The message that contains the parameter, such as `PARM` or `PARAM_VALUE`. */
   source: string;
@@ -340,7 +340,7 @@ export interface Range {
   low: number;
   /** The upper end, above `low`. */
   high: number;
-  /** The unit of both: `us`, `1` (a fraction) or `raw` (counts of a bus). */
+  /** The unit of both ends: `us`, `1` (a fraction) or `raw` (counts of a bus). */
   unit: string;
   /** The source of the range, such as `MOT_PWM_MIN/MAX`. */
   source: string;
@@ -352,9 +352,9 @@ export interface Reliability {
   from_pct: number;
   /** The upper end of the band in %, exclusive except for 100. */
   to_pct: number;
-  /** The frequency on real vehicles. */
+  /** The frequency on flights of real vehicles. */
   real: Followed | null;
-  /** The frequency on simulated vehicles. */
+  /** The frequency on flights of simulated vehicles. */
   simulated: Followed | null;
 }
 
@@ -466,7 +466,7 @@ export interface Step {
 export interface Summary {
   /** The time in the air, summed over all flights of a log, in seconds. */
   in_air_s: number;
-  /** The time in the air with a known risk (with several risks, with all of them known), in seconds. */
+  /** The time in the air with a known risk, in seconds. If there are several risks, all of them must be known. */
   assessed_s: number;
   /** The time in the air with a risk interpolated where no rule applies, in seconds. */
   filled_s: number;
@@ -518,13 +518,13 @@ export interface VerdictSettings {
   warn: LevelSettings;
   /** The conditions for FAIL. */
   fail: LevelSettings;
-  /** A level is cleared when nothing has held it for this time, in seconds. The new level is the one that is held then. */
+  /** A level is cleared when nothing has held it for this time, in seconds, and is replaced by the level that is still held. */
   clear_after_s: number;
   /** In this time after take-off, in seconds, only FAIL is raised; WARN does not count as reached. */
   quiet_after_take_off_s: number;
   /** A WARN that is raised in this time before touch-down, in seconds, is withdrawn, unless FAIL is being reached at touch-down. */
   quiet_before_landing_s: number;
-  /** While their mean effective command is below this, the motors idle: before take-off and after landing the vehicle then counts as on the ground, even if the land detector lags. Motors that begin to idle within 2 s after a risk that reaches WARN do not count as a landing. Motors that idle for 3 s while the autopilot reports that the vehicle is in the air count as a fall, with a risk of 100 %. */
+  /** The motors idle while their mean effective command is below this. Before take-off and after landing the vehicle then counts as on the ground, even if the land detector lags. Motors that begin to idle within 2 s after a risk that reaches WARN do not count as a landing. Motors that idle for 3 s while the autopilot reports that the vehicle is in the air count as a fall, with a risk of 100 %. */
   idle_below: number;
   /** The limits of the findings that are not about the risk. */
   notices: NoticeSettings;
