@@ -126,7 +126,7 @@ def driver(arguments: list[str], shard_bytes: int | None = None) -> list[str]:
     """The command to run `flagred.fleet` as a process. With small shards there are more moments at which to kill it."""
     if shard_bytes is None:
         return [sys.executable, "-m", "flagred.fleet", *arguments]
-    program = f"import sys, flagred.fleet.shards as shards; shards.MOST_BYTES = {shard_bytes}\n"
+    program = f"import sys, flagred.fleet.shards as shards; shards.MAX_BYTES = {shard_bytes}\n"
     program += "from flagred.fleet.__main__ import main; sys.exit(main(sys.argv[1:]))"
     return [sys.executable, "-c", program, *arguments]
 

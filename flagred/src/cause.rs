@@ -59,12 +59,14 @@ impl Propositions<'_> {
         outputs: usize,
         mut ask: impl FnMut(usize, RuleQuery, &dyn Fn(usize, &[f64]) -> Option<usize>) -> Option<usize>,
     ) -> Option<Cause> {
-        let mut asked = RuleQuery::Raises(risk_pct);
+        let mut requested = RuleQuery::Raises(risk_pct);
         // A chain has no cycles, so it is at most this long.
         for _ in 0..outputs {
-            let proposition = ask(output, asked, &|rule, degrees| self.of_rule(rule, degrees))?;
-            let said = self.all.get(proposition)?;
-            let (rule, input) = (said.rule as usize, said.input as usize);
+            let proposition = ask(output, requested, &|rule, degrees| {
+                self.of_rule(rule, degrees)
+            })?;
+            let antecedent = self.all.get(proposition)?;
+            let (rule, input) = (antecedent.rule as usize, antecedent.input as usize);
             if let Some(value) = inputs.get(input) {
                 return Some(Cause {
                     rule,
@@ -74,7 +76,7 @@ impl Propositions<'_> {
                 });
             }
             output = input - inputs.len();
-            asked = RuleQuery::Concludes(proposition);
+            requested = RuleQuery::Concludes(proposition);
         }
         None
     }
@@ -82,15 +84,15 @@ impl Propositions<'_> {
     /// The first proposition of a rule that is true. `degrees` are those of the literals. They are empty if all rules
     /// are plain ANDs, where every proposition of a rule that fires is true.
     fn of_rule(&self, rule: usize, degrees: &[f64]) -> Option<usize> {
-        let holds = |said: &Proposition| {
-            let degree = degrees.get(said.literal as usize);
+        let holds = |antecedent: &Proposition| {
+            let degree = degrees.get(antecedent.literal as usize);
             degree.is_none_or(|degree| *degree > 0.0)
         };
         let of_rule = || {
             let all = self.all.iter().enumerate();
-            all.filter(|(_, said)| said.rule as usize == rule)
+            all.filter(|(_, antecedent)| antecedent.rule as usize == rule)
         };
-        let holding = of_rule().find(|(_, said)| holds(said));
+        let holding = of_rule().find(|(_, antecedent)| holds(antecedent));
         holding.or_else(|| of_rule().next()).map(|(index, _)| index)
     }
 }

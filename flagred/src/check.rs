@@ -23,10 +23,10 @@ use crate::{
 
 mod alone;
 
-pub use alone::{Alone, alone};
+pub use alone::{OutvotedInput, alone};
 
 /// The minimum share of an input's range that the values of its signal must cover.
-const LEAST_SHARE: f64 = 0.02;
+const MIN_SHARE: f64 = 0.02;
 
 /// Reads a profile and compiles it with the rule set that it names.
 ///
@@ -57,7 +57,7 @@ pub fn profile(
         (Err(findings), _) | (_, Err(findings)) => return (findings, None),
     };
     let mut found = Vec::new();
-    let at = Places(tree);
+    let at = ValuePositions(tree);
     let estimator = compile(&profile, rules, &at, &mut found);
     if let Some(estimator) = &estimator {
         thresholds(estimator, &["verdict"], &at, &mut found);
@@ -101,16 +101,16 @@ pub fn profile(
 /// ```
 pub fn outvoted(profile: &fuzzy::Source, estimator: &Estimator) -> Findings {
     let found = match profile.tree() {
-        Ok(tree) => alone::outvoted(estimator, &Places(tree)),
+        Ok(tree) => alone::outvoted(estimator, &ValuePositions(tree)),
         Err(_) => Vec::new(),
     };
     Findings::locate(found, profile.text())
 }
 
 /// The positions of the values of a document, by their keys.
-struct Places<'t>(&'t Node);
+struct ValuePositions<'t>(&'t Node);
 
-impl Places<'_> {
+impl ValuePositions<'_> {
     /// The span of the value at a path of keys; if it is a default, the span of the deepest key that is written.
     fn of(&self, path: &[&str]) -> Range<usize> {
         let mut node = self.0;
@@ -137,7 +137,7 @@ impl Places<'_> {
 fn compile(
     profile: &Profile,
     rules: &fuzzy::Source,
-    at: &Places,
+    at: &ValuePositions,
     found: &mut Vec<Diagnostic>,
 ) -> Option<Estimator> {
     let compiled = rules.engine().map_err(EstimatorError::from);
@@ -203,7 +203,12 @@ fn compile(
 /// Finds levels of another risk without a threshold for the elevated risk, although the same level of the first risk
 /// has one. A level that is written for another risk replaces the level of the first risk as a whole, so the omitted
 /// threshold does not apply.
-fn dropped(first: &Profile, other: &Profile, place: &[&str], at: &Places) -> Vec<Diagnostic> {
+fn dropped(
+    first: &Profile,
+    other: &Profile,
+    place: &[&str],
+    at: &ValuePositions,
+) -> Vec<Diagnostic> {
     let levels = [
         ("warn", &first.verdict.warn, &other.verdict.warn),
         ("fail", &first.verdict.fail, &other.verdict.fail),
@@ -229,7 +234,12 @@ fn dropped(first: &Profile, other: &Profile, place: &[&str], at: &Places) -> Vec
 }
 
 /// Finds thresholds that are never or always reached, and WARN above FAIL.
-fn thresholds(estimator: &Estimator, place: &[&str], at: &Places, found: &mut Vec<Diagnostic>) {
+fn thresholds(
+    estimator: &Estimator,
+    place: &[&str],
+    at: &ValuePositions,
+    found: &mut Vec<Diagnostic>,
+) {
     let profile = estimator.profile();
     let of = |keys: &[&str]| at.of(&[place, keys].concat());
     let verdict = &profile.verdict;
@@ -303,7 +313,7 @@ const LONGEST_WINDOW_S: f64 = 600.0;
 const LONGEST_WAIT_S: f64 = 30.0;
 
 /// Finds windows and waits that are so long that their unit is probably wrong.
-fn durations(profile: &Profile, at: &Places, found: &mut Vec<Diagnostic>) {
+fn durations(profile: &Profile, at: &ValuePositions, found: &mut Vec<Diagnostic>) {
     let mut note = |path: &[&str], message: String, help: &str| {
         found.push(Diagnostic::warning("unit", at.of(path), message).help(help));
     };
@@ -408,7 +418,7 @@ fn signal(
     input: &ProfileInput,
     model: &Model,
     known: &[(&str, &str)],
-    at: &Places,
+    at: &ValuePositions,
 ) -> Option<Diagnostic> {
     let place = at.of(&["inputs", &input.name]);
     let variable = model.inputs.iter().find(|v| v.name == input.name)?;
@@ -522,7 +532,7 @@ fn signal(
     }
     let (low, high) = range(&input.source)?;
     let shared = high.min(variable.high) - low.max(variable.low);
-    if shared >= LEAST_SHARE * (variable.high - variable.low) {
+    if shared >= MIN_SHARE * (variable.high - variable.low) {
         return None;
     }
     let message = format!(
@@ -568,7 +578,7 @@ fn range_of_signal(source: &Source) -> (f64, f64) {
 fn number_of_statistic<'k>(
     input: &ProfileInput,
     unit_of: impl Fn(&str) -> Option<&'k str>,
-    at: &Places,
+    at: &ValuePositions,
 ) -> Option<Diagnostic> {
     let source = &input.source;
     let finding = |key: &str, message: String, meant: Option<f64>| {

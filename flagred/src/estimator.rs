@@ -15,7 +15,7 @@ use crate::{
     craft::Craft,
     gap::Filling,
     lookup::{Lookup, UNREAD},
-    plan::{NoPlan, rules_for},
+    plan::{PlanError, rules_for},
     profile::Profile,
     sample::Estimate,
 };
@@ -47,7 +47,7 @@ struct Compiled {
     inputs: Vec<Input>,
     propositions: Vec<Proposition>,
     /// The inputs and terms of the propositions, by name.
-    said: Vec<AntecedentProposition>,
+    antecedents: Vec<AntecedentProposition>,
     /// The estimators of the other risks of the profile, each compiled as if its risk were the only one.
     others: Vec<Estimator>,
 }
@@ -211,18 +211,18 @@ impl Estimator {
         let (channels, inputs) = profile
             .channels(&[], craft.with_optional(&signals))
             .map_err(|input| EstimatorError::NoSource { input })?;
-        let said = engine.propositions();
-        let propositions = said.iter().map(|said| Proposition {
-            rule: said.evaluation_index as u32,
-            input: match said.input.checked_sub(fed.len()) {
-                None => fed.get(said.input).copied().unwrap_or_default(),
+        let antecedents = engine.propositions();
+        let propositions = antecedents.iter().map(|antecedents| Proposition {
+            rule: antecedents.evaluation_index as u32,
+            input: match antecedents.input.checked_sub(fed.len()) {
+                None => fed.get(antecedents.input).copied().unwrap_or_default(),
                 Some(output) => (profile.inputs.len() + output) as u32,
             },
-            literal: said.literal as u32,
+            literal: antecedents.literal as u32,
         });
         Ok(Estimator(Arc::new(Compiled {
             propositions: propositions.collect(),
-            said,
+            antecedents,
             others,
             profile: profile.clone(),
             filling: Filling::new(engine, model, output, &profile.gap)?,
@@ -262,7 +262,7 @@ impl Estimator {
     /// The smallest and the largest value that fills gaps while each input is within its interval. The inputs are in
     /// the order of the model.
     pub(crate) fn filled_within(&self, inputs: &[Interval]) -> Option<Interval> {
-        self.0.filling.lend()?.within(inputs)
+        self.0.filling.borrowed()?.within(inputs)
     }
 
     /// The indices of the inputs, as in [`Lookup::order`].
@@ -285,27 +285,29 @@ impl Estimator {
         };
         let risk = (self.0.output, risk_pct);
         let outputs = engine.output_names().len();
-        let cause = propositions.cause(inputs, risk, outputs, |output, asked, pick| {
-            let rule = match asked {
+        let cause = propositions.cause(inputs, risk, outputs, |output, requested, pick| {
+            let rule = match requested {
                 RuleQuery::Raises(value) => engine.raised_by(scratch, point, output, value),
-                RuleQuery::Concludes(said) => {
-                    engine.concluded_by(scratch, point, self.0.said.get(said)?)
+                RuleQuery::Concludes(antecedents) => {
+                    engine.concluded_by(scratch, point, self.0.antecedents.get(antecedents)?)
                 }
             };
             pick(rule?, scratch.degrees())
         })?;
-        let rule = self.0.said.get(cause.proposition)?.rule;
+        let rule = self.0.antecedents.get(cause.proposition)?.rule;
         Some(Cause { rule, ..cause })
     }
 
     /// The input and the term, with its hedges, of each proposition of the rules, in the order of
     /// [`Plan::propositions`]. [`Cause::proposition`] is an index into them.
     pub fn propositions(&self) -> impl ExactSizeIterator<Item = (&str, &str)> {
-        let all = self.0.propositions.iter().zip(&self.0.said);
-        all.map(|(said, AntecedentProposition { term, .. })| {
+        let all = self.0.propositions.iter().zip(&self.0.antecedents);
+        all.map(|(antecedents, AntecedentProposition { term, .. })| {
             let inputs = &self.0.profile.inputs;
-            let name = match (said.input as usize).checked_sub(inputs.len()) {
-                None => inputs.get(said.input as usize).map(|input| &*input.name),
+            let name = match (antecedents.input as usize).checked_sub(inputs.len()) {
+                None => inputs
+                    .get(antecedents.input as usize)
+                    .map(|input| &*input.name),
                 Some(output) => self.0.engine.output_names().nth(output),
             };
             (name.unwrap_or_default(), term.as_str())
@@ -339,9 +341,9 @@ impl Estimator {
     /// # Errors
     ///
     /// If the output, or an output that it reads, has no closed form, or if the profile has several risks.
-    pub fn plan(&self) -> Result<Plan<'_>, NoPlan> {
+    pub fn plan(&self) -> Result<Plan<'_>, PlanError> {
         if let Some(other) = self.0.profile.other_risks.first() {
-            return Err(NoPlan::SeveralRisks {
+            return Err(PlanError::SeveralRisks {
                 output: self.0.profile.output.clone(),
                 other: other.output.clone(),
             });
@@ -356,21 +358,21 @@ impl Estimator {
             signals: self.0.profile.signals().len() as u32,
             settings: self.0.profile.settings(),
             coverage_below: self.0.filling.coverage_below(),
-            filled: self.0.filling.lend(),
+            filled: self.0.filling.borrowed(),
             propositions: &self.0.propositions,
         })
     }
 
     /// The values that fill gaps; empty if nothing is filled.
     pub(crate) fn filled(&self) -> &[f64] {
-        self.0.filling.lend().map_or(&[], |knots| knots.values)
+        self.0.filling.borrowed().map_or(&[], |knots| knots.values)
     }
 
     fn lookup(&self) -> Lookup<'_> {
         Lookup {
             order: &self.0.order,
             coverage_below: self.0.filling.coverage_below(),
-            filled: self.0.filling.lend(),
+            filled: self.0.filling.borrowed(),
         }
     }
 }

@@ -41,9 +41,9 @@ const KNOWN_SHARE: f64 = 0.5;
 const WHOLE_SHARE: f64 = 0.95;
 
 /// The maximum number of findings that are kept per flight. The most severe ones are kept.
-const MOST_FINDINGS: usize = 1000;
+const MAX_FINDINGS: usize = 1000;
 /// The maximum number of steps that are kept per flight: seven hours at 10 Hz.
-pub const MOST_STEPS: usize = 250_000;
+pub const MAX_STEPS: usize = 250_000;
 /// Judged risks that a landing could still withdraw are merged if they are closer together than this, in seconds.
 const PENDING_S: f64 = 1e-4;
 
@@ -113,7 +113,7 @@ struct Flight {
     peaks: Vec<UncertainPeak>,
     next_step_s: f64,
     widened_step_s: Option<f64>,
-    last: Option<Last>,
+    last: Option<PreviousSample>,
     summary: Summary,
     judged_s: f64,
     risk_times_s: f64,
@@ -130,7 +130,7 @@ struct Flight {
 
 /// The previous sample.
 #[derive(Debug, Clone, Copy)]
-struct Last {
+struct PreviousSample {
     t_s: f64,
     in_air: bool,
 }
@@ -272,7 +272,7 @@ impl Assessor {
         if update.t_s < flight.next_step_s {
             return;
         }
-        if flight.steps.len() >= MOST_STEPS {
+        if flight.steps.len() >= MAX_STEPS {
             flight.widen_steps();
         }
         let step_s = flight.widened_step_s.unwrap_or(step_s);
@@ -329,7 +329,7 @@ impl Flight {
         unknown: impl Iterator<Item = Unknown> + Clone,
     ) {
         let t_s = sample.t_s;
-        let last = self.last.replace(Last {
+        let last = self.last.replace(PreviousSample {
             t_s,
             in_air: !sample.is_on_ground(),
         });
@@ -349,7 +349,7 @@ impl Flight {
         let quiet_s = profile.verdict.quiet_before_landing_s;
         if sample.is_on_ground() {
             if last.is_some() {
-                self.take_back(t_s - quiet_s);
+                self.retract(t_s - quiet_s);
             }
             return;
         }
@@ -411,7 +411,7 @@ impl Flight {
 
     /// Drops the least severe findings if there are too many.
     fn bound_findings(&mut self) {
-        if self.findings.len() >= 2 * MOST_FINDINGS {
+        if self.findings.len() >= 2 * MAX_FINDINGS {
             self.keep_gravest();
         }
     }
@@ -423,8 +423,8 @@ impl Flight {
                 .then(a.from_s.total_cmp(&b.from_s))
         };
         self.findings.sort_by(by_gravity);
-        let left_out = self.findings.len().saturating_sub(MOST_FINDINGS);
-        self.findings.truncate(MOST_FINDINGS);
+        let left_out = self.findings.len().saturating_sub(MAX_FINDINGS);
+        self.findings.truncate(MAX_FINDINGS);
         self.findings_left_out += left_out as u64;
     }
 
@@ -436,7 +436,7 @@ impl Flight {
             (Some(first), Some(last)) => last.t_s - first.t_s,
             _ => 0.0,
         };
-        let mean_s = span_s / (MOST_STEPS / 2) as f64;
+        let mean_s = span_s / (MAX_STEPS / 2) as f64;
         self.widened_step_s = Some(self.widened_step_s.map_or(mean_s, |s| mean_s.max(2.0 * s)));
     }
 
@@ -454,7 +454,7 @@ impl Flight {
     }
 
     /// Handles a landing: the time after `from_s` is not judged.
-    fn take_back(&mut self, from_s: f64) {
+    fn retract(&mut self, from_s: f64) {
         self.settle(from_s);
         self.pending.clear();
         for step in self.steps.iter_mut().rev() {

@@ -211,10 +211,10 @@ impl Follower {
         self.last_s = Some(t_s);
         note((feed.channels, feed.inputs), room.seen, sample.signals);
         let together = motor::take(room.motors, &mut self.bin, t_s, sample.motors);
-        let rests = self.rests(sample, room.motors);
+        let is_at_rest = self.is_at_rest(sample, room.motors);
         // During a fall, a risk that does not depend on the motors is still estimated.
         self.falls = self.falls && feed.needs_motors();
-        if rests {
+        if is_at_rest {
             room.inputs.fill(f64::NAN);
             if self.in_air_since_s.is_some() {
                 let down_since_s = *self.down_since_s.get_or_insert(t_s);
@@ -272,7 +272,7 @@ impl Follower {
             risk_pct: said.risk_pct,
             elevated_pct: elevated,
             takes_off,
-            sinks: !self.falls && self.notices.sinks(),
+            slow_down_together: !self.falls && self.notices.slow_down_together(),
             falls: self.falls,
         };
         let step = self.alert.push(now, room.motors);
@@ -313,7 +313,7 @@ impl Follower {
         update: &Update,
         cause: impl FnOnce(f64) -> Option<Cause>,
     ) {
-        if !self.alert.asks_why() {
+        if !self.alert.needs_cause() {
             return;
         }
         let by_rules = update.risk.ok().filter(|said| said.filled_from.is_none());
@@ -361,7 +361,7 @@ impl Follower {
     /// Whether the vehicle is on the ground: the autopilot reports it, or the motors idle before take-off or after a
     /// flight that was calm to its end. If a motor is unknown, this cannot be determined, and the vehicle counts as in
     /// the air.
-    fn rests(&mut self, sample: &Sample<'_>, motors: &[Motor]) -> bool {
+    fn is_at_rest(&mut self, sample: &Sample<'_>, motors: &[Motor]) -> bool {
         let t_s = sample.t_s;
         let fell = core::mem::replace(&mut self.falls, false);
         if sample.is_on_ground() {

@@ -38,9 +38,9 @@ impl Range {
     /// assert!(Range::new(1940.0, 1100.0).is_none() && Range::new(1100.0, f64::NAN).is_none());
     /// ```
     pub fn new(low: f64, high: f64) -> Option<Range> {
-        const LEAST_SPAN: f64 = 1e-9;
+        const MIN_SPAN: f64 = 1e-9;
         let span = high - low;
-        let least = LEAST_SPAN * low.abs().max(high.abs()).max(1.0);
+        let least = MIN_SPAN * low.abs().max(high.abs()).max(1.0);
         (span >= least && span.is_finite()).then_some(Range { low, high })
     }
 

@@ -19,7 +19,7 @@ pub use crate::sample::{Estimate, Sample, Unknown, Update};
 pub use crate::{
     craft::Craft,
     effort::Factors,
-    motor::{MOST_OUTSIDE, counted},
+    motor::{MAX_OUTSIDE, counted},
 };
 
 impl Unknown {
@@ -120,18 +120,18 @@ pub struct Monitor {
     memory: Memory,
     channels: Vec<Channel>,
     inputs: Vec<Input>,
-    room: OwnRoom,
+    room: OwnedBuffers,
     follower: Follower,
     /// The monitors of the other risks of the profile.
     others: Vec<Monitor>,
-    ended_elsewhere: Vec<OfRisk>,
+    ended_elsewhere: Vec<RiskFinding>,
     /// The reason why the risk of this monitor is unknown after the latest sample; the other risks are not considered.
     unknown: Option<Unknown>,
 }
 
 /// A finding about another risk of the profile.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct OfRisk {
+pub struct RiskFinding {
     /// The index of the risk in [`Profile::other_risks`].
     pub risk: usize,
     /// The finding.
@@ -140,7 +140,7 @@ pub struct OfRisk {
 
 /// The memory of a flight besides the follower, allocated once.
 #[derive(Debug, Clone)]
-struct OwnRoom {
+struct OwnedBuffers {
     risks: Window,
     seen: Vec<ChannelState>,
     inputs: Vec<f64>,
@@ -210,7 +210,7 @@ impl Monitor {
             unknown: None,
             others,
             memory: Memory::of(estimator),
-            room: OwnRoom {
+            room: OwnedBuffers {
                 risks: Window::new(profile.elevated_risk.window_s),
                 seen,
                 inputs: vec![f64::NAN; profile.inputs.len()],
@@ -242,7 +242,7 @@ impl Monitor {
             update.level = update.level.max(of_other.level);
             let [found, ..] = of_other.ended;
             self.ended_elsewhere
-                .extend(found.map(|found| OfRisk { risk, found }));
+                .extend(found.map(|found| RiskFinding { risk, found }));
         }
         if update.risk.is_err() || self.unknown_elsewhere().next().is_some() {
             update.level = update.level.filter(|level| *level > Level::Good);
@@ -272,7 +272,7 @@ impl Monitor {
             inputs,
             order: estimator.order(),
         };
-        let update = follower.push(feed, &mut room.lend(), sample, |inputs| {
+        let update = follower.push(feed, &mut room.borrowed(), sample, |inputs| {
             estimator.estimate(inputs, memory)
         });
         follower.explain(feed, &update, |risk_pct| {
@@ -344,12 +344,12 @@ impl Monitor {
     }
 
     /// The finding behind the current level, if the finding is about another risk.
-    pub fn open_elsewhere(&self) -> Option<OfRisk> {
+    pub fn open_elsewhere(&self) -> Option<RiskFinding> {
         let first = self.follower.open_finding().map(|found| found.severity);
         let others = self.others.iter().enumerate();
         let open = others.filter_map(|(risk, other)| {
             let found = other.follower.open_finding()?;
-            Some(OfRisk { risk, found })
+            Some(RiskFinding { risk, found })
         });
         // Among findings of equal level, the first counts.
         let worst = open.reduce(
@@ -362,7 +362,7 @@ impl Monitor {
     }
 
     /// The findings of other risks that ended with the latest sample, or with [`Monitor::finish`].
-    pub fn ended_elsewhere(&self) -> &[OfRisk] {
+    pub fn ended_elsewhere(&self) -> &[RiskFinding] {
         &self.ended_elsewhere
     }
 
@@ -381,11 +381,11 @@ impl Monitor {
     pub fn finish(&mut self) -> EndedFindings {
         self.ended_elsewhere.clear();
         for (risk, other) in self.others.iter_mut().enumerate() {
-            let [found, ..] = other.follower.finish(&mut other.room.lend());
+            let [found, ..] = other.follower.finish(&mut other.room.borrowed());
             self.ended_elsewhere
-                .extend(found.map(|found| OfRisk { risk, found }));
+                .extend(found.map(|found| RiskFinding { risk, found }));
         }
-        self.follower.finish(&mut self.room.lend())
+        self.follower.finish(&mut self.room.borrowed())
     }
 
     /// The mean margin over all motors and the profile's window, with any rule set: the paper's first input.
@@ -411,8 +411,8 @@ impl Monitor {
     }
 }
 
-impl OwnRoom {
-    fn lend(&mut self) -> FlightMemory<'_> {
+impl OwnedBuffers {
+    fn borrowed(&mut self) -> FlightMemory<'_> {
         FlightMemory {
             risks: &mut self.risks,
             seen: &mut self.seen,

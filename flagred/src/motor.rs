@@ -19,7 +19,7 @@ fn bin_of(t_s: f64) -> f64 {
 /// Commands up to this far outside [0, 1] are rounding errors or slightly exceeded limits. Commands further outside
 /// have another unit, such as microseconds or percent.
 #[cfg_attr(not(feature = "std"), expect(unreachable_pub))]
-pub const MOST_OUTSIDE: f64 = 0.5;
+pub const MAX_OUTSIDE: f64 = 0.5;
 
 /// Marks the absence of a motor, in place of its index.
 const NONE: u32 = u32::MAX;
@@ -63,7 +63,7 @@ pub(crate) struct MotorRecord {
 
 /// The values of all motors together at one time.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Together {
+pub(crate) struct MotorTotals {
     pub(crate) efforts: Efforts,
     /// The noise of the commands if this sample completed a bin; otherwise NaN.
     pub(crate) noise: f64,
@@ -219,7 +219,7 @@ pub(crate) fn forget_trims(motors: &mut [Motor]) {
     }
 }
 
-/// The command that a monitor uses for a motor: clamped to [0, 1] if it is at most [`MOST_OUTSIDE`] outside, as is done
+/// The command that a monitor uses for a motor: clamped to [0, 1] if it is at most [`MAX_OUTSIDE`] outside, as is done
 /// when logs are read; otherwise NaN (unknown).
 ///
 /// ```
@@ -230,14 +230,14 @@ pub(crate) fn forget_trims(motors: &mut [Motor]) {
 /// ```
 #[cfg_attr(not(feature = "std"), expect(unreachable_pub))]
 pub fn counted(command: f64) -> f64 {
-    match (-MOST_OUTSIDE..=1.0 + MOST_OUTSIDE).contains(&command) {
+    match (-MAX_OUTSIDE..=1.0 + MAX_OUTSIDE).contains(&command) {
         true => command.clamp(0.0, 1.0),
         false => f64::NAN,
     }
 }
 
 /// Stores the effective command of each motor at `t_s`; missing ones are unknown.
-pub(crate) fn take(motors: &mut [Motor], bin: &mut Bin, t_s: f64, commands: &[f64]) -> Together {
+pub(crate) fn take(motors: &mut [Motor], bin: &mut Bin, t_s: f64, commands: &[f64]) -> MotorTotals {
     let noise = bin.begin(t_s, motors);
     let commands = commands.iter().map(|command| counted(*command));
     let commands = commands.chain(core::iter::repeat(f64::NAN));
@@ -259,7 +259,7 @@ pub(crate) fn take(motors: &mut [Motor], bin: &mut Bin, t_s: f64, commands: &[f6
     if !has_geometry {
         efforts = effort::UNKNOWN;
     }
-    Together {
+    MotorTotals {
         efforts,
         noise,
         bin: bin.index,

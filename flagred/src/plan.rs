@@ -10,7 +10,7 @@ use crate::board::Rules;
 /// The reason why a rule set or a profile cannot be exported.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
-pub enum NoPlan {
+pub enum PlanError {
     /// The risk has no closed form.
     #[error(
         "the value of output `{output}` has no closed form, so it cannot be written as a table"
@@ -42,22 +42,22 @@ pub enum NoPlan {
     },
 }
 
-impl NoPlan {
+impl PlanError {
     /// A hint about what can be exported.
     pub fn help(&self) -> &'static str {
         match self {
-            NoPlan::NoClosedForm { .. } => {
+            PlanError::NoClosedForm { .. } => {
                 "the defuzzifiers have a closed form with `implication: minimum` or `product` and `aggregation: maximum` or \
                  `sum` (maxima: `maximum` only), over terms that are not functions, without `samples`; Takagi-Sugeno and \
                  Tsukamoto outputs always have one"
             }
-            NoPlan::KeepsPrevious { .. } => {
+            PlanError::KeepsPrevious { .. } => {
                 "set `when_no_rule_fires` to a number, such as 0, or leave that key out"
             }
-            NoPlan::Type2 => {
+            PlanError::Type2 => {
                 "remove the lower membership functions: then the export contains only the upper ones"
             }
-            NoPlan::SeveralRisks { .. } => {
+            PlanError::SeveralRisks { .. } => {
                 "write a profile for each risk, and run a monitor for each: the findings are the same"
             }
         }
@@ -69,10 +69,10 @@ impl NoPlan {
 /// # Errors
 ///
 /// If an output has no closed form, or keeps its previous value, or the rule set has type-2 terms.
-pub fn rules(engine: &Engine) -> Result<Rules<'_>, NoPlan> {
+pub fn rules(engine: &Engine) -> Result<Rules<'_>, PlanError> {
     let mut outputs = engine.model().outputs.iter();
     if let Some(output) = outputs.find(|output| output.keeps_previous()) {
-        return Err(NoPlan::KeepsPrevious {
+        return Err(PlanError::KeepsPrevious {
             output: output.variable.name.clone(),
         });
     }
@@ -80,9 +80,12 @@ pub fn rules(engine: &Engine) -> Result<Rules<'_>, NoPlan> {
 }
 
 /// The rule set as plain data, with the values of the given outputs only.
-pub(crate) fn rules_for(engine: &Engine, mut outputs: Range<usize>) -> Result<Rules<'_>, NoPlan> {
+pub(crate) fn rules_for(
+    engine: &Engine,
+    mut outputs: Range<usize>,
+) -> Result<Rules<'_>, PlanError> {
     if engine.model().has_type2_terms() {
-        return Err(NoPlan::Type2);
+        return Err(PlanError::Type2);
     }
     let (chain, table) = (engine.chain(), engine.table());
     let open = match (chain, table) {
@@ -98,7 +101,7 @@ pub(crate) fn rules_for(engine: &Engine, mut outputs: Range<usize>) -> Result<Ru
             stages: chain.map_or(&[], |chain| chain.stages),
             places: chain.map_or(&[], |chain| chain.places),
         }),
-        (open, _) => Err(NoPlan::NoClosedForm {
+        (open, _) => Err(PlanError::NoClosedForm {
             output: engine
                 .output_names()
                 .nth(open.unwrap_or_default())
@@ -129,7 +132,7 @@ mod tests {
         let output = "risk".into();
         assert_eq!(
             estimator.plan().err(),
-            Some(NoPlan::NoClosedForm { output })
+            Some(PlanError::NoClosedForm { output })
         );
     }
 
@@ -167,7 +170,7 @@ mod tests {
         let output = "strain".into();
         assert_eq!(
             estimator.plan().err(),
-            Some(NoPlan::NoClosedForm { output })
+            Some(PlanError::NoClosedForm { output })
         );
     }
 }

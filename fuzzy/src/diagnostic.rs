@@ -147,8 +147,8 @@ fn shortened(message: String, most: usize) -> String {
         _ => cut(part, most),
     });
     // A text of many backticks has many short parts.
-    const MOST_PARTS: usize = 1000;
-    let parts: Vec<Cow<'_, str>> = parts.take(MOST_PARTS).collect();
+    const MAX_PARTS: usize = 1000;
+    let parts: Vec<Cow<'_, str>> = parts.take(MAX_PARTS).collect();
     parts.join("`")
 }
 

@@ -64,7 +64,7 @@ impl Serialize for Model {
 impl<'de> Deserialize<'de> for Model {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let tree = Node::deserialize(deserializer)?;
-        let told = |findings| D::Error::custom(Findings(findings).to_string());
-        Ok(format::read(&tree).map_err(told)?.model)
+        let reported = |findings| D::Error::custom(Findings(findings).to_string());
+        Ok(format::read(&tree).map_err(reported)?.model)
     }
 }

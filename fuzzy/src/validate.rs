@@ -21,23 +21,23 @@ mod type2;
 mod variables;
 
 /// The maximum number of inputs and outputs of a model.
-const MOST_VARIABLES: usize = 1000;
+const MAX_VARIABLES: usize = 1000;
 /// The maximum number of terms of one input or output.
-const MOST_TERMS: usize = 1000;
+const MAX_TERMS: usize = 1000;
 /// The maximum number of terms of all inputs and outputs.
-const MOST_TERMS_IN_ALL: usize = 10_000;
+const MAX_TERMS_IN_ALL: usize = 10_000;
 /// The maximum number of points of one `piecewise` term.
-const MOST_POINTS: usize = 2000;
+const MAX_POINTS: usize = 2000;
 /// The maximum number of points of all `piecewise` terms.
-const MOST_POINTS_IN_ALL: usize = 20_000;
+const MAX_POINTS_IN_ALL: usize = 20_000;
 /// The maximum number of rules of a model.
-const MOST_RULES: usize = 100_000;
+const MAX_RULES: usize = 100_000;
 /// The maximum number of conclusions of one rule.
-const MOST_CONCLUSIONS: usize = 100;
+const MAX_CONCLUSIONS: usize = 100;
 /// The maximum number of rule blocks of a model.
-const MOST_BLOCKS: usize = 1000;
+const MAX_BLOCKS: usize = 1000;
 /// The maximum number of errors reported for a model; validation stops after that.
-const MOST_FINDINGS: usize = 1000;
+const MAX_FINDINGS: usize = 1000;
 
 impl Document {
     /// Validates the model, so that it can be compiled; `text` is the text that it was parsed from.
@@ -133,7 +133,7 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
     }
     for (i, rule) in model.rules.iter().enumerate() {
         let first = validator.findings.len();
-        if first >= MOST_FINDINGS {
+        if first >= MAX_FINDINGS {
             let message = format!("rule {} and the rules after it were not examined", i + 1);
             let here = spans.rules.get(i).map_or(0..0, |rule| rule.whole.clone());
             let help = format!("correct the {first} errors above first");
@@ -199,29 +199,29 @@ fn too_large(model: &Model, spans: &Spans) -> Option<Diagnostic> {
     refuse(
         name(0),
         variables().count(),
-        MOST_VARIABLES,
+        MAX_VARIABLES,
         "inputs and outputs",
     )
-    .or_else(|| refuse(name(widest), terms, MOST_TERMS, &format!("terms of `{of}`")))
-    .or_else(|| refuse(name(0), in_all, MOST_TERMS_IN_ALL, "terms"))
+    .or_else(|| refuse(name(widest), terms, MAX_TERMS, &format!("terms of `{of}`")))
+    .or_else(|| refuse(name(0), in_all, MAX_TERMS_IN_ALL, "terms"))
     .or_else(|| {
         let what = format!("points of the term `{term}`");
-        refuse(name(owner), most_points, MOST_POINTS, &what)
+        refuse(name(owner), most_points, MAX_POINTS, &what)
     })
     .or_else(|| {
         refuse(
             name(0),
             all_points,
-            MOST_POINTS_IN_ALL,
+            MAX_POINTS_IN_ALL,
             "points of `piecewise` terms",
         )
     })
-    .or_else(|| refuse(Some(spans.rules_key.clone()), rules, MOST_RULES, "rules"))
+    .or_else(|| refuse(Some(spans.rules_key.clone()), rules, MAX_RULES, "rules"))
     .or_else(|| {
         let what = format!("conclusions of rule {}", rule + 1);
-        refuse(rule_span, conclusions, MOST_CONCLUSIONS, &what)
+        refuse(rule_span, conclusions, MAX_CONCLUSIONS, &what)
     })
-    .or_else(|| refuse(block, model.blocks.len(), MOST_BLOCKS, "rule blocks"))
+    .or_else(|| refuse(block, model.blocks.len(), MAX_BLOCKS, "rule blocks"))
 }
 
 struct Validator<'m> {

@@ -293,9 +293,9 @@ fn a_bad_entry_of_a_list_is_named() {
     ];
     for (before, after, expected) in cases {
         assert!(json.contains(before), "{json}");
-        let told = json.replacen(before, after, 1).parse::<Model>();
-        let told = told.unwrap_err().to_string();
-        assert!(told.contains(expected), "{told}");
+        let reported = json.replacen(before, after, 1).parse::<Model>();
+        let reported = reported.unwrap_err().to_string();
+        assert!(reported.contains(expected), "{reported}");
     }
 }
 
@@ -309,8 +309,8 @@ fn mappings_that_were_sorted_are_read_as_before() {
     assert_eq!(document.warnings.0[0].code, "inverted-parameters");
     assert_eq!(document.warnings.0.len(), 1);
     text = text.replace("much: 9", "much: 1");
-    let told = text.parse::<Model>().unwrap_err().to_string();
-    assert!(told.contains("have the same peak 1"), "{told}");
+    let reported = text.parse::<Model>().unwrap_err().to_string();
+    assert!(reported.contains("have the same peak 1"), "{reported}");
 }
 
 #[test]

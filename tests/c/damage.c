@@ -19,8 +19,8 @@
     } while (0)
 
 /* A plan that requires more memory counts as refused here. */
-#define MOST_MEMORY ((size_t)1 << 20)
-#define MOST_MOTORS 4
+#define MAX_MEMORY ((size_t)1 << 20)
+#define MAX_MOTORS 4
 /* The time limit of one call, in seconds. */
 #define LONGEST 60
 
@@ -60,10 +60,10 @@ static void set(size_t index, array changed) {
 }
 
 static void use(flagred_monitor *monitor, size_t motors, int samples) {
-    double inputs[16], commands[MOST_MOTORS], signals[16];
+    double inputs[16], commands[MAX_MOTORS], signals[16];
     flagred_update said;
     flagred_finding ended[FLAGRED_ENDED];
-    flagred_factors geometry[MOST_MOTORS] = {{-1, 1, 1}, {1, -1, 1}, {1, 1, -1}, {-1, -1, -1}};
+    flagred_factors geometry[MAX_MOTORS] = {{-1, 1, 1}, {1, -1, 1}, {1, 1, -1}, {-1, -1, -1}};
     for (int i = 0; i < 9; i++) {
         for (size_t k = 0; k < 16; k++) {
             inputs[k] = plan.rules.inputs[k < plan.rules.inputs_count ? k : 0].low + (double)((i + k) % 9) * 0.125;
@@ -75,7 +75,7 @@ static void use(flagred_monitor *monitor, size_t motors, int samples) {
     for (int i = 0; i < samples; i++) {
         for (size_t k = 0; k < 16; k++) {
             signals[k] = i % 40 == 39 ? NAN : i * 0.5 + (double)k;
-            commands[k % MOST_MOTORS] = 0.25 * (double)((i + k) % 5);
+            commands[k % MAX_MOTORS] = 0.25 * (double)((i + k) % 5);
         }
         sample.in_air = i % 200 > 2;
         CHECK(flagred_push(monitor, &sample, &said) == FLAGRED_OK);
@@ -86,13 +86,13 @@ static void use(flagred_monitor *monitor, size_t motors, int samples) {
 }
 
 static void try_plan(size_t motors, int samples) {
-    static _Alignas(16) unsigned char most[MOST_MEMORY];
+    static _Alignas(16) unsigned char most[MAX_MEMORY];
     flagred_monitor *monitor;
     void *memory;
     tried++;
     alarm(LONGEST);
     size_t size = flagred_memory_size(&plan, motors);
-    if (size == 0 || size > MOST_MEMORY) {
+    if (size == 0 || size > MAX_MEMORY) {
         CHECK(flagred_start(&plan, motors, NULL, most, sizeof most, &monitor) != FLAGRED_OK && monitor == NULL);
         return;
     }
@@ -184,7 +184,7 @@ static void damage_at_random(void) {
         memcpy(word, &damaged, sizeof damaged);
         count++;
     }
-    try_plan(1 + below(MOST_MOTORS), 300);
+    try_plan(1 + below(MAX_MOTORS), 300);
     while (count-- > 0) {
         memcpy(changed[count].word, &changed[count].kept, sizeof(uint32_t));
     }
@@ -204,7 +204,7 @@ int main(int count, char **arguments) {
             set(i, found);
         }
     }
-    try_plan(MOST_MOTORS, 300);
+    try_plan(MAX_MOTORS, 300);
     CHECK(accepted == 1);
     damage_in_turn();
     while (plans-- > 0) {

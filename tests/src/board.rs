@@ -222,7 +222,7 @@ pub fn points(estimator: &Estimator, along: usize) -> Vec<Vec<f64>> {
 }
 
 /// An update as text, bit for bit, in the format of `tests/c/follow.c`.
-pub fn told(said: &Update) -> String {
+pub fn reported(said: &Update) -> String {
     use flagred::sample::Unknown;
     let (unknown, input) = match said.risk {
         Ok(_) => (0, -1),

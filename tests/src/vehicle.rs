@@ -2,12 +2,12 @@
 //! `flagred watch`.
 
 mod answers;
-mod heard;
 mod messages;
+mod received;
 
-pub use heard::{Inbox, Progress};
 use messages::{OUTPUTS_A_PORT, attitude, landed_state, servo_of_port};
 pub use messages::{heartbeat, heartbeat_of, servo};
+pub use received::{Inbox, Progress};
 
 use std::{
     collections::VecDeque,
@@ -43,7 +43,7 @@ pub struct StandIn {
     other: Option<(Wire, Stream)>,
     late: VecDeque<(u32, Vec<u8>)>,
     /// Messages received from the other side.
-    pub heard: Inbox,
+    pub received: Inbox,
     /// Messages received on the second link.
     pub heard_elsewhere: Inbox,
     /// For each motor command, its time on the vehicle's clock in ms, and the moment at which it was sent.
@@ -60,7 +60,7 @@ pub struct StandIn {
     /// The interval at which incoming packets are read while the vehicle waits for its next
     /// command.
     pub look_every: Duration,
-    asked: bool,
+    requested: bool,
     /// The minimum interval of motor commands.
     pub every: Duration,
     /// Whether the vehicle sends motor commands at the rate that the other side requests.
@@ -99,7 +99,7 @@ impl StandIn {
             stream: Stream::new(),
             other: None,
             late: VecDeque::new(),
-            heard: Inbox::default(),
+            received: Inbox::default(),
             heard_elsewhere: Inbox::default(),
             sent: Vec::new(),
             progress: None,
@@ -107,7 +107,7 @@ impl StandIn {
             clock_s: 0.0,
             answers: true,
             look_every: Duration::from_millis(2),
-            asked: false,
+            requested: false,
             every: Duration::ZERO,
             obeys: false,
             shift: 0,
@@ -120,7 +120,7 @@ impl StandIn {
         let start = Instant::now();
         let is_met = |vehicle: &StandIn| match &vehicle.progress {
             Some(progress) => progress.is_ready.load(Ordering::Acquire),
-            None => vehicle.asked,
+            None => vehicle.requested,
         };
         while !is_met(self) {
             assert!(start.elapsed() < PATIENCE, "the vehicle is not met");
@@ -351,7 +351,9 @@ impl StandIn {
                 if !self.chance(TALK, self.link.loss) {
                     self.answer(&message);
                 }
-                self.heard.messages.push((at, system, component, message));
+                self.received
+                    .messages
+                    .push((at, system, component, message));
             }
         }
     }

@@ -242,8 +242,8 @@ pub fn compare(said: &WatchOutput, assessed: &Value) -> (f64, f64) {
 }
 
 /// Checks that there is one text for each change of state, none on the ground, and all in the form that ground stations require.
-pub fn check_texts(said: &WatchOutput, heard: &Inbox) {
-    let texts = heard.texts();
+pub fn check_texts(said: &WatchOutput, received: &Inbox) {
+    let texts = received.texts();
     let levels: Vec<(String, u8)> = said
         .all("level")
         .map(|event| {

@@ -187,9 +187,12 @@ fn a_file_that_is_not_a_log_is_identified() {
         ),
     ] {
         let output = assess(&[&folder.file(name, bytes)]);
-        let told = String::from_utf8(output.stderr).unwrap();
+        let reported = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(3), "{name}");
-        assert!(told.contains(said) && told.contains("help:"), "{told}");
+        assert!(
+            reported.contains(said) && reported.contains("help:"),
+            "{reported}"
+        );
         assert!(output.stdout.is_empty(), "{name}");
     }
 }

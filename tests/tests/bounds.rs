@@ -150,8 +150,11 @@ fn too_many_take_offs_end_the_flight_and_all_outputs_report_it() {
     flights(&mut fs::File::create(&log).unwrap(), 4_000);
     let rows = flagred().args(["dataset", &log]).output().unwrap();
     assert_eq!(rows.status.code(), Some(3), "{rows:?}");
-    let told = String::from_utf8(rows.stderr).unwrap();
-    assert!(told.contains("exceeds the limits of the reader"), "{told}");
+    let reported = String::from_utf8(rows.stderr).unwrap();
+    assert!(
+        reported.contains("exceeds the limits of the reader"),
+        "{reported}"
+    );
 }
 
 /// Without events, take-offs are detected from the commands, possibly at every row.
@@ -506,13 +509,13 @@ fn files_of_other_programs_are_refused_in_time() {
                 "{name}: {:?}",
                 started.elapsed()
             );
-            let told = [output.stdout, output.stderr].concat();
-            let told = String::from_utf8(told).unwrap();
+            let reported = [output.stdout, output.stderr].concat();
+            let reported = String::from_utf8(reported).unwrap();
             assert!(matches!(output.status.code(), Some(1 | 3)), "{name}");
             assert!(
-                told.contains(said),
+                reported.contains(said),
                 "{name}: {}",
-                &told[..told.len().min(1_000)]
+                &reported[..reported.len().min(1_000)]
             );
         }
     }
@@ -571,12 +574,12 @@ fn tables_with_too_many_columns_are_not_searched_for_inputs() {
         started.elapsed()
     );
     assert_eq!(output.status.code(), Some(3));
-    let told = String::from_utf8(output.stderr).unwrap();
+    let reported = String::from_utf8(output.stderr).unwrap();
     assert!(
-        told.contains("50000 columns exceed the limit of 500"),
-        "{told}"
+        reported.contains("50000 columns exceed the limit of 500"),
+        "{reported}"
     );
-    assert!(told.contains("--input"), "{told}");
+    assert!(reported.contains("--input"), "{reported}");
 }
 
 #[test]
@@ -765,9 +768,9 @@ fn tables_are_bounded() {
                     }
                 }
             });
-            let told = String::from_utf8(output.stderr).unwrap();
-            assert_ne!(output.status.code(), Some(0), "{arguments:?}: {told}");
-            assert!(output.status.code().is_some(), "{arguments:?}: {told}");
+            let reported = String::from_utf8(output.stderr).unwrap();
+            assert_ne!(output.status.code(), Some(0), "{arguments:?}: {reported}");
+            assert!(output.status.code().is_some(), "{arguments:?}: {reported}");
         }
     }
     let wide: Vec<String> = (0..100_000).map(|column| format!("c{column}")).collect();
@@ -813,8 +816,8 @@ fn the_table_of_limits_agrees_with_the_constants() {
             Some(("1", bits)) => 1_u64 << bits.parse::<u32>().unwrap(),
             _ => value.replace('_', "").parse().unwrap(),
         };
-        let told = &cells[cells.len() - 3];
-        let digits: String = told
+        let reported = &cells[cells.len() - 3];
+        let digits: String = reported
             .chars()
             .take_while(|c| c.is_ascii_digit() || *c == ',')
             .filter(char::is_ascii_digit)

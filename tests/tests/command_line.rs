@@ -58,10 +58,16 @@ fn misplaced_arguments_are_reported_with_their_correct_position() {
         ),
     ] {
         let output = flagred().args(arguments).output().unwrap();
-        let told = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(code), "{told}");
-        assert!(told.contains(said) && told.lines().count() == 2, "{told}");
-        assert!(told.contains("  help: ") && told.contains(help), "{told}");
+        let reported = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{reported}");
+        assert!(
+            reported.contains(said) && reported.lines().count() == 2,
+            "{reported}"
+        );
+        assert!(
+            reported.contains("  help: ") && reported.contains(help),
+            "{reported}"
+        );
     }
 }
 

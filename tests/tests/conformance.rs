@@ -248,8 +248,8 @@ fn bless() {
                 .into_iter()
                 .map(|value| value.map_or("none".into(), |value| format!("{value:.12}")))
                 .collect();
-            let asked = line.split(", is: ").next().unwrap().trim_end_matches('}');
-            cases.push_str(&format!("{asked}, is: [{}]}}\n", values.join(", ")));
+            let requested = line.split(", is: ").next().unwrap().trim_end_matches('}');
+            cases.push_str(&format!("{requested}, is: [{}]}}\n", values.join(", ")));
         }
         let text = std::fs::read_to_string(&file).unwrap();
         let (rule_set, _) = text.split_once("\n---\n").unwrap();

@@ -77,21 +77,21 @@ fn faults_and_upsets_are_reported_within_a_second() {
 
     let mut table: BTreeMap<&str, FaultResults> = BTreeMap::new();
     for (flight, alarms) in flights.iter().zip(&alarms) {
-        let told = table.entry(&flight.what).or_default();
+        let reported = table.entry(&flight.what).or_default();
         let Some(over_s) = flight.over_s else {
-            told.small += 1;
-            told.alarms_of_small += usize::from(!alarms.is_empty());
+            reported.small += 1;
+            reported.alarms_of_small += usize::from(!alarms.is_empty());
             continue;
         };
-        let is_told =
+        let is_reported =
             |(raised_s, to_s): &(f64, f64)| *raised_s <= over_s + 1.0 && *to_s >= over_s - 10.0;
-        match alarms.iter().any(is_told) {
-            true => told.in_time += 1,
+        match alarms.iter().any(is_reported) {
+            true => reported.in_time += 1,
             false => {
                 let raised_s = alarms.iter().map(|(raised_s, _)| *raised_s);
                 let after = raised_s.filter(|raised_s| *raised_s > over_s);
                 let delay = after.map(|raised_s| raised_s - over_s).reduce(f64::min);
-                told.late.push(match delay {
+                reported.late.push(match delay {
                     Some(delay_s) => format!("{} after {delay_s:.1} s", flight.id),
                     None => format!("{} never", flight.id),
                 });
@@ -101,16 +101,16 @@ fn faults_and_upsets_are_reported_within_a_second() {
     println!(
         "what, told within 1 s, told later or never; flights without an error over 5 degrees, with an alarm"
     );
-    for (what, told) in &table {
+    for (what, reported) in &table {
         println!(
             "{what:14} {:3} {:?}; {:3} {:3}",
-            told.in_time, told.late, told.small, told.alarms_of_small
+            reported.in_time, reported.late, reported.small, reported.alarms_of_small
         );
     }
     let share = |what: &[&str]| {
         let of = || what.iter().map(|what| &table[what]);
-        let in_time: usize = of().map(|told| told.in_time).sum();
-        let late: usize = of().map(|told| told.late.len()).sum();
+        let in_time: usize = of().map(|reported| reported.in_time).sum();
+        let late: usize = of().map(|reported| reported.late.len()).sum();
         in_time as f64 / (in_time + late) as f64
     };
     // A bump is over before it appears in a window of two seconds.

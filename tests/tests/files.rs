@@ -24,8 +24,8 @@ use flagred_tests::{
 
 fn run(arguments: &[&str]) -> (Option<i32>, String) {
     let output = flagred().args(arguments).output().unwrap();
-    let told = String::from_utf8(output.stderr).unwrap();
-    (output.status.code(), told)
+    let reported = String::from_utf8(output.stderr).unwrap();
+    (output.status.code(), reported)
 }
 
 /// An input is recognised by its own name, through a symbolic link, by another spelling of its path, and by a hard
@@ -75,13 +75,13 @@ fn no_output_replaces_an_input() {
         ),
     ] {
         let before = fs::read(input).unwrap();
-        let (code, told) = run(&arguments);
-        assert_eq!(code, Some(2), "{arguments:?}: {told}");
+        let (code, reported) = run(&arguments);
+        assert_eq!(code, Some(2), "{arguments:?}: {reported}");
         assert!(
-            told.contains("is also an input")
-                || told.contains("which is an input")
-                || told.contains("; write `"),
-            "{arguments:?}: {told}"
+            reported.contains("is also an input")
+                || reported.contains("which is an input")
+                || reported.contains("; write `"),
+            "{arguments:?}: {reported}"
         );
         assert!(fs::read(input).unwrap() == before, "{arguments:?}");
     }
@@ -98,9 +98,9 @@ fn a_log_named_as_the_report_is_not_replaced() {
         ["assess", "--svg", &first, STEADY],
         ["convert", "-o", &first, STEADY],
     ] {
-        let (code, told) = run(&arguments);
-        assert_eq!(code, Some(2), "{told}");
-        assert!(told.contains("; write `"), "{told}");
+        let (code, reported) = run(&arguments);
+        assert_eq!(code, Some(2), "{reported}");
+        assert!(reported.contains("; write `"), "{reported}");
         assert!(fs::read(&first).unwrap() == fs::read(STEADY).unwrap());
     }
 }
@@ -112,17 +112,18 @@ fn two_outputs_cannot_be_the_same_file() {
     symlink("same", folder.at("link")).unwrap();
     let link = folder.at("link");
     for (html, svg) in [(&same, &same), (&same, &link), (&link, &same)] {
-        let (code, told) = run(&["assess", STEADY, "--html", html, "--svg", svg]);
-        assert_eq!(code, Some(2), "{told}");
+        let (code, reported) = run(&["assess", STEADY, "--html", html, "--svg", svg]);
+        assert_eq!(code, Some(2), "{reported}");
         assert!(
-            told.contains("which is another output") || told.contains("is also another output"),
-            "{told}"
+            reported.contains("which is another output")
+                || reported.contains("is also another output"),
+            "{reported}"
         );
         assert!(!Path::new(&same).exists());
     }
-    let (code, told) = run(&["assess", STEADY, "--html", "-", "--svg", "-"]);
+    let (code, reported) = run(&["assess", STEADY, "--html", "-", "--svg", "-"]);
     assert_eq!(code, Some(2));
-    assert!(told.contains("two outputs are `-`"), "{told}");
+    assert!(reported.contains("two outputs are `-`"), "{reported}");
 }
 
 /// `flagred convert log.csv -o - >> log.csv` would never end.
@@ -148,9 +149,9 @@ fn standard_output_that_is_also_an_input_or_output_is_refused() {
         (&log, vec!["dataset", &log]),
         (&html, vec!["assess", &log, "--html", &html]),
     ] {
-        let (code, told) = append(file, &arguments);
-        assert_eq!(code, Some(2), "{arguments:?}: {told}");
-        assert!(told.contains("standard output"), "{told}");
+        let (code, reported) = append(file, &arguments);
+        assert_eq!(code, Some(2), "{arguments:?}: {reported}");
+        assert!(reported.contains("standard output"), "{reported}");
     }
     assert!(fs::read(&log).unwrap() == before);
 }
@@ -184,8 +185,8 @@ fn a_replaced_file_keeps_its_mode_and_links_keep_leading_to_it() {
     }
     // A new file has the default mode of new files, even if it is created through a link.
     symlink("target.csv", folder.at("dangling.csv")).unwrap();
-    let (code, told) = run(&["convert", &log, "-o", &folder.at("dangling.csv")]);
-    assert_eq!(code, Some(0), "{told}");
+    let (code, reported) = run(&["convert", &log, "-o", &folder.at("dangling.csv")]);
+    assert_eq!(code, Some(0), "{reported}");
     let plain = fs::metadata(folder.file("plain", "")).unwrap();
     let made = fs::symlink_metadata(folder.at("target.csv")).unwrap();
     assert!(made.is_file() && made.mode() == plain.mode());
@@ -220,8 +221,8 @@ fn special_files_are_written_to_and_not_replaced() {
             }
             read
         });
-        let (code, told) = run(&["convert", STEADY, "-o", &place]);
-        assert_eq!(code, Some(0), "{place}: {told}");
+        let (code, reported) = run(&["convert", STEADY, "-o", &place]);
+        assert_eq!(code, Some(0), "{place}: {reported}");
         let read = reader.join().unwrap();
         let whole = whole.get_or_insert_with(|| fs::read(&place).unwrap());
         assert!(read == *whole || place.ends_with("plain"), "{place}");
@@ -251,11 +252,11 @@ fn files_that_may_be_edited_are_replaced_only_with_force() {
         fs::write(file, "by hand").unwrap();
         let cautious: Vec<&str> = writing.arguments.iter().map(String::as_str).collect();
         let cautious: Vec<&str> = cautious.into_iter().filter(|a| *a != "--force").collect();
-        let (code, told) = run(&cautious);
-        assert_eq!(code, Some(2), "{told}");
+        let (code, reported) = run(&cautious);
+        assert_eq!(code, Some(2), "{reported}");
         assert!(
-            told.contains("exists already") && told.contains("`--force`"),
-            "{told}"
+            reported.contains("exists already") && reported.contains("`--force`"),
+            "{reported}"
         );
         assert_eq!(fs::read_to_string(file).unwrap(), "by hand");
         assert_eq!(writing.command().status().unwrap().code(), Some(0));
@@ -273,20 +274,20 @@ fn a_full_disk_leaves_the_old_file_and_exits_with_2() {
             fs::write(file, "old").unwrap();
         }
         let output = writing.limited(1).output().unwrap();
-        let told = String::from_utf8(output.stderr).unwrap();
+        let reported = String::from_utf8(output.stderr).unwrap();
         assert_eq!(
             output.status.code(),
             Some(2),
-            "{:?}: {told}",
+            "{:?}: {reported}",
             writing.arguments
         );
         assert!(
-            told.contains("cannot be written") && told.contains("free some disk space"),
-            "{told}"
+            reported.contains("cannot be written") && reported.contains("free some disk space"),
+            "{reported}"
         );
         assert!(
             writing.contents().iter().all(|content| content == b"old"),
-            "{told}"
+            "{reported}"
         );
         for file in &writing.files {
             assert_eq!(drafts(Path::new(file).parent().unwrap()), [""; 0]);
@@ -318,9 +319,12 @@ fn a_full_disk_behind_standard_output_exits_with_2() {
             .open("/dev/full")
             .unwrap();
         let output = flagred().args(&arguments).stdout(full).output().unwrap();
-        let told = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {told}");
-        assert!(told.contains("cannot be written"), "{arguments:?}: {told}");
+        let reported = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {reported}");
+        assert!(
+            reported.contains("cannot be written"),
+            "{arguments:?}: {reported}"
+        );
     }
 }
 
@@ -481,13 +485,13 @@ fn a_full_file_system_leaves_the_old_file() {
             .output()
             .unwrap();
         let said = String::from_utf8(output.stdout).unwrap();
-        let told = String::from_utf8(output.stderr).unwrap();
+        let reported = String::from_utf8(output.stderr).unwrap();
         assert!(
             said.ends_with("2\nold2\n"),
-            "{:?}: {said}{told}",
+            "{:?}: {said}{reported}",
             writing.arguments
         );
-        assert!(told.contains("No space left on device"), "{told}");
+        assert!(reported.contains("No space left on device"), "{reported}");
         tried += 1;
     }
     assert!(tried >= 8);

@@ -20,8 +20,8 @@ fn valid(name: &str, document: &Value) {
 
 fn json(arguments: &[&str]) -> Value {
     let output = flagred().args(arguments).output().unwrap();
-    let told = String::from_utf8_lossy(&output.stderr);
-    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {told}"))
+    let reported = String::from_utf8_lossy(&output.stderr);
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {reported}"))
 }
 
 /// A minute at 25 Hz with motors at their limits from 30 s on and a wrong attitude from 32 s on.

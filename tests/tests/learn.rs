@@ -53,9 +53,9 @@ fn an_unsuitable_template_is_refused_with_help() {
     for (text, expected) in cases {
         let model = folder.file("model.yaml", &text);
         let output = learn(&[&model, &data, "-o", &folder.at("out.yaml")]);
-        let told = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{told}");
-        assert!(told.contains(expected), "{told}");
+        let reported = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{reported}");
+        assert!(reported.contains(expected), "{reported}");
     }
 }
 
@@ -65,14 +65,14 @@ fn columns_without_a_name_are_ignored() {
     let folder = Folder::new();
     let model = folder.file("model.yaml", VARIABLES);
     let data = folder.file("data.csv", "margin,,spread\n0.1,5,0.2\n");
-    let told = |arguments: &[&str]| {
+    let reported = |arguments: &[&str]| {
         let out = folder.at("out.yaml");
         let mut command = flagred();
         let output = command.args(arguments).args(["-o", &out]).output().unwrap();
         assert!(!output.status.success());
         String::from_utf8_lossy(&output.stderr).into_owned()
     };
-    let missing = told(&["learn", &model, &data]);
+    let missing = reported(&["learn", &model, &data]);
     assert!(
         missing.contains("there are `margin` and `spread`"),
         "{missing}"
@@ -89,7 +89,7 @@ fn columns_without_a_name_are_ignored() {
             "--weight=",
         ],
     ] {
-        let nameless = told(arguments);
+        let nameless = reported(arguments);
         assert!(nameless.contains("a column must have a name"), "{nameless}");
     }
 }
@@ -106,11 +106,11 @@ fn weights_whose_sums_overflow_are_refused_as_by_tune() {
         );
         let out = folder.at("out.yaml");
         let output = learn(&[&model, &data, "-o", &out, "--weight", "w"]);
-        let told = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(3), "{told}");
+        let reported = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(3), "{reported}");
         let expected =
             format!("line 3: the weight is {weight}, but must be a number from 1e-50 to 1e50");
-        assert!(told.contains(&expected), "{told}");
+        assert!(reported.contains(&expected), "{reported}");
         assert!(!std::path::Path::new(&out).exists());
     }
 }
@@ -563,8 +563,8 @@ fn rules_are_learned_for_the_constants_of_the_template() {
                 let mut arguments = vec![model, &rows, "-o", &out, "--force", "--resolve", resolve];
                 arguments.extend(direction);
                 let output = learn(&arguments);
-                let told = String::from_utf8_lossy(&output.stderr);
-                assert_eq!(output.status.code(), Some(0), "{resolve}: {told}");
+                let reported = String::from_utf8_lossy(&output.stderr);
+                assert_eq!(output.status.code(), Some(0), "{resolve}: {reported}");
                 let text = fs::read_to_string(&out).unwrap();
                 let model = fuzzy::yaml::parse(&text).unwrap().model;
                 let rules = model.rules.iter().map(|rule| rule.rule.to_string());

@@ -35,9 +35,9 @@ fn run(arguments: &[&str]) -> Output {
 /// Asserts that a call ends with exit code 3 and prints `said` on standard error.
 fn refused(arguments: &[&str], said: &str) {
     let output = run(arguments);
-    let told = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(3), "{arguments:?}: {told}");
-    assert!(told.contains(said), "{arguments:?}: {told}");
+    let reported = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(3), "{arguments:?}: {reported}");
+    assert!(reported.contains(said), "{arguments:?}: {reported}");
 }
 
 #[test]
@@ -220,10 +220,10 @@ fn a_time_of_another_millennium_loses_only_its_row() {
     let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(document["read"]["bad_messages"], 2, "{document}");
     assert_eq!(document["read"]["messages"], 2, "{document}");
-    let told = document.to_string();
+    let reported = document.to_string();
     assert!(
-        told.contains("line 3: the time is beyond 100000000000000 s"),
-        "{told}"
+        reported.contains("line 3: the time is beyond 100000000000000 s"),
+        "{reported}"
     );
 }
 
@@ -288,15 +288,15 @@ fn a_file_that_is_not_a_rule_set_is_not_quoted() {
     );
     let named = folder.file("profile.yaml", profile("secret.txt"));
     let output = run(&["export", "--c", &named]);
-    let told = String::from_utf8(output.stderr).unwrap();
+    let reported = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(3));
     assert!(
-        told.contains("secret.txt`, which is not a rule set"),
-        "{told}"
+        reported.contains("secret.txt`, which is not a rule set"),
+        "{reported}"
     );
     assert!(
-        !told.contains("root:") && !told.contains("hunter2"),
-        "{told}"
+        !reported.contains("root:") && !reported.contains("hunter2"),
+        "{reported}"
     );
     // The content is not shown either if the file itself is named as a rule set or as a profile.
     let texts = [
@@ -317,11 +317,11 @@ fn a_file_that_is_not_a_rule_set_is_not_quoted() {
         ] {
             let output = run(arguments);
             assert_ne!(output.status.code(), Some(0), "{arguments:?}");
-            let told = [output.stdout, output.stderr].concat();
-            let told = String::from_utf8(told).unwrap();
+            let reported = [output.stdout, output.stderr].concat();
+            let reported = String::from_utf8(reported).unwrap();
             assert!(
-                !told.contains("root:") && !told.contains("hunter2"),
-                "{arguments:?}: {told}"
+                !reported.contains("root:") && !reported.contains("hunter2"),
+                "{arguments:?}: {reported}"
             );
         }
     }

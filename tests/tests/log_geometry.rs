@@ -20,7 +20,7 @@ fn declared(path: &Path, frame: &str) -> Flight {
 }
 
 /// The geometry of a log: the frame, how certain it is, and its source.
-fn told(flight: &Flight) -> Option<(Option<&str>, Basis, &str)> {
+fn reported(flight: &Flight) -> Option<(Option<&str>, Basis, &str)> {
     let geometry = flight.geometry.as_ref()?;
     Some((
         geometry.frame.as_deref(),
@@ -81,7 +81,7 @@ fn the_geometry_of_logs_is_read() {
     ] {
         let flight = open(&data.join(log));
         assert_eq!(
-            told(&flight),
+            reported(&flight),
             Some((frame, Basis::Declared, source)),
             "{log}"
         );
@@ -145,7 +145,7 @@ fn layouts_of_six_and_eight_motors_are_found_and_contradictions_reported() {
 #[ignore = "needs FLAGRED_SHARED"]
 fn wrong_frames_of_quadrotors_are_detected_by_their_attitude() {
     let data = reference_data();
-    let (mut all, mut told) = (0, 0);
+    let (mut all, mut reported) = (0, 0);
     for entry in fs::read_dir(data.join("sitl2/timeseries")).unwrap() {
         let path = entry.unwrap().path();
         if open(&path).motors.len() != 4 {
@@ -154,7 +154,7 @@ fn wrong_frames_of_quadrotors_are_detected_by_their_attitude() {
         let right = declared(&path, "QUAD/X");
         all += 1;
         assert_eq!(right.geometry.unwrap().doubt, None, "{}", path.display());
-        told += usize::from(
+        reported += usize::from(
             declared(&path, "QUAD/BF_X")
                 .geometry
                 .unwrap()
@@ -162,6 +162,6 @@ fn wrong_frames_of_quadrotors_are_detected_by_their_attitude() {
                 .is_some(),
         );
     }
-    eprintln!("{told} of {all} wrong frames told");
-    assert!(all > 100 && 2 * told > all);
+    eprintln!("{reported} of {all} wrong frames told");
+    assert!(all > 100 && 2 * reported > all);
 }

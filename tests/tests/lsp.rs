@@ -23,7 +23,7 @@ struct Editor {
     server: Child,
     to: ChildStdin,
     from: BufReader<ChildStdout>,
-    asked: u32,
+    requested: u32,
 }
 
 impl Editor {
@@ -40,7 +40,7 @@ impl Editor {
             server,
             to,
             from,
-            asked: 0,
+            requested: 0,
         };
         let able = json!({"general": {"positionEncodings": encodings}});
         let answer = editor.ask("initialize", json!({"capabilities": able}));
@@ -62,10 +62,10 @@ impl Editor {
     }
 
     fn ask_raw(&mut self, method: &str, params: Value) -> Value {
-        self.asked += 1;
-        self.send(json!({"id": self.asked, "method": method, "params": params}));
+        self.requested += 1;
+        self.send(json!({"id": self.requested, "method": method, "params": params}));
         let answer = self.hear();
-        assert_eq!(answer["id"], self.asked);
+        assert_eq!(answer["id"], self.requested);
         answer
     }
 
@@ -102,10 +102,10 @@ impl Editor {
     }
 
     fn found(&mut self, uri: &str) -> Vec<String> {
-        let told = self.hear();
-        assert_eq!(told["method"], "textDocument/publishDiagnostics");
-        assert_eq!(told["params"]["uri"], uri);
-        let found = told["params"]["diagnostics"].as_array().unwrap();
+        let reported = self.hear();
+        assert_eq!(reported["method"], "textDocument/publishDiagnostics");
+        assert_eq!(reported["params"]["uri"], uri);
+        let found = reported["params"]["diagnostics"].as_array().unwrap();
         let shown = |one: &Value| {
             let from = &one["range"]["start"];
             let message = one["message"].as_str().unwrap().replace('\n', " / ");
@@ -279,9 +279,9 @@ fn names_are_described_found_and_renamed() {
     assert_eq!(there["range"]["start"], json!({"line": 3, "character": 49}));
 
     let rename = |to: &str| {
-        let mut asked = place(uri, 3, 49);
-        asked["newName"] = to.into();
-        asked
+        let mut requested = place(uri, 3, 49);
+        requested["newName"] = to.into();
+        requested
     };
     let edits = editor.ask("textDocument/rename", rename("cold"));
     let mut text = RULES.to_owned();
@@ -333,8 +333,8 @@ fn the_layout_is_that_of_fmt() {
     let uri = "file:///tmp/fan.yaml";
     editor.open(uri, &untidy);
     let options = json!({"tabSize": 2, "insertSpaces": true});
-    let asked = json!({"textDocument": {"uri": uri}, "options": options});
-    let edits = editor.ask("textDocument/formatting", asked);
+    let requested = json!({"textDocument": {"uri": uri}, "options": options});
+    let edits = editor.ask("textDocument/formatting", requested);
     editor.end();
     assert!(flagred().args(["fmt", &file]).status().unwrap().success());
     let formatted = std::fs::read_to_string(&file).unwrap();

@@ -82,13 +82,13 @@ fn the_default_picture_is_that_of_the_default_rule_set() {
     insta::assert_snapshot!(format!("{text}\n{notes}"));
 
     // Explicitly chosen points need no note.
-    let asked = [
+    let requested = [
         "--hold=throttle_activity=0.008",
         "--hold=swing_per_room=0.03",
         "--hold=at_limit=0",
     ];
     let axes = ["--x=unsteady_now:0..0.049", "--y=unsteady_lately:0..0.057"];
-    let (_, same, notes) = map(&[&[FLAGRED, "--points", "26"][..], &asked, &axes].concat());
+    let (_, same, notes) = map(&[&[FLAGRED, "--points", "26"][..], &requested, &axes].concat());
     assert_eq!((same, notes.as_str()), (text, ""));
 }
 
@@ -379,7 +379,7 @@ fn an_earlier_table_is_compared_with_the_current_outputs() {
         let arguments = [vec![model.as_str()], written.clone(), vec!["-o", &table]].concat();
         let (code, _, errors) = map(&arguments);
         assert_eq!(code, Some(0), "{errors}");
-        let (code, told, _) = map(&[&model, "--check", &table]);
+        let (code, reported, _) = map(&[&model, "--check", &table]);
         let (changed_code, change, errors) = map(&[&changed, "--check", &table]);
         if written.contains(&"--hold") {
             // Fixed inputs have no column.
@@ -387,8 +387,8 @@ fn an_earlier_table_is_compared_with_the_current_outputs() {
             assert!(errors.contains("has no column `noise`"), "{errors}");
             continue;
         }
-        assert_eq!(code, Some(0), "{told}");
-        assert!(told.contains("`fan` is the same at"), "{told}");
+        assert_eq!(code, Some(0), "{reported}");
+        assert!(reported.contains("`fan` is the same at"), "{reported}");
         assert_eq!(changed_code, Some(1), "{change}");
         assert!(
             change.contains("100 before, 99.99 now") || change.contains("`fan` differs at"),
@@ -409,7 +409,7 @@ fn an_earlier_table_is_compared_with_the_current_outputs() {
     let rows: Vec<&str> = known.lines().collect();
     let (kept, _) = rows[1].rsplit_once(',').unwrap();
     let table = folder.file("known.csv", format!("{}\n{kept},\n{}\n", rows[0], rows[2]));
-    let (code, told, _) = map(&[&model, "--check", &table]);
-    assert_eq!(code, Some(1), "{told}");
-    insta::assert_snapshot!(told.replace(folder.path().to_str().unwrap(), "FOLDER"));
+    let (code, reported, _) = map(&[&model, "--check", &table]);
+    assert_eq!(code, Some(1), "{reported}");
+    insta::assert_snapshot!(reported.replace(folder.path().to_str().unwrap(), "FOLDER"));
 }

@@ -185,8 +185,8 @@ fn mpmath_computes_the_values_of_two_hundred_models() {
         .arg(folder.path().join("models.jsonl"))
         .output()
         .unwrap();
-    let told = String::from_utf8(output.stdout).unwrap();
+    let reported = String::from_utf8(output.stdout).unwrap();
     let errors = String::from_utf8(output.stderr).unwrap();
-    assert!(output.status.success(), "{told}{errors}");
-    assert!(told.contains("600 values, 0 wrong"), "{told}");
+    assert!(output.status.success(), "{reported}{errors}");
+    assert!(reported.contains("600 values, 0 wrong"), "{reported}");
 }

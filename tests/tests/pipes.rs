@@ -35,10 +35,10 @@ fn ended(arguments: &[&str], read: Option<usize>) -> (Option<i32>, String) {
         Some(bytes) => out.read_exact(&mut vec![0; bytes]).unwrap(),
     }
     drop(out);
-    let mut told = String::new();
+    let mut reported = String::new();
     let mut err = child.stderr.take().unwrap();
-    err.read_to_string(&mut told).unwrap();
-    (child.wait().unwrap().code(), told)
+    err.read_to_string(&mut reported).unwrap();
+    (child.wait().unwrap().code(), reported)
 }
 
 #[test]
@@ -86,13 +86,16 @@ fn a_closed_pipe_does_not_change_the_exit_code() {
         (vec!["new", "mine", "-o", "-"], 0),
     ] {
         for read in [None, Some(0), Some(1)] {
-            let (ended, told) = ended(&arguments, read);
+            let (ended, reported) = ended(&arguments, read);
             assert_eq!(
                 ended,
                 Some(code),
-                "{arguments:?}, {read:?} bytes read: {told}"
+                "{arguments:?}, {read:?} bytes read: {reported}"
             );
-            assert!(!told.contains("roken pipe"), "{arguments:?}: {told}");
+            assert!(
+                !reported.contains("roken pipe"),
+                "{arguments:?}: {reported}"
+            );
         }
     }
 }
@@ -123,8 +126,8 @@ fn reports_are_written_despite_a_closed_pipe() {
             vec![learned],
         ),
     ] {
-        let (ended, told) = ended(&arguments, Some(0));
-        assert_eq!(ended, Some(code), "{arguments:?}: {told}");
+        let (ended, reported) = ended(&arguments, Some(0));
+        assert_eq!(ended, Some(code), "{arguments:?}: {reported}");
         for file in files {
             assert!(fs::metadata(file).unwrap().len() > 500, "{arguments:?}");
             fs::remove_file(file).unwrap();
@@ -218,7 +221,7 @@ fn a_watch_without_a_reader_continues_recording() {
     let air = flight.in_air.as_ref().unwrap().spans[0];
     vehicle.fly(&flight, Speed::Times(60.0), air.start_s, air.start_s + 60.0);
     wait_for(|| fs::metadata(&file).unwrap().len() > before + 10_000);
-    assert!(!vehicle.heard.values("FR_RISK").is_empty());
+    assert!(!vehicle.received.values("FR_RISK").is_empty());
     let interrupt = format!("kill -INT {}", child.id());
     assert!(
         Command::new("sh")
@@ -287,9 +290,9 @@ fn identify_reads_standard_input_once() {
         .unwrap();
     drop(table);
     let output = child.wait_with_output().unwrap();
-    let told = String::from_utf8(output.stderr).unwrap();
-    assert!(output.status.success(), "{told}");
-    assert!(told.contains("70 used, 0 refused"), "{told}");
+    let reported = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{reported}");
+    assert!(reported.contains("70 used, 0 refused"), "{reported}");
     let written = String::from_utf8(output.stdout).unwrap();
     assert!(fuzzy::yaml::parse(&written).is_ok(), "{written}");
 }

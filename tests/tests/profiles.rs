@@ -55,11 +55,11 @@ fn the_shipped_profiles_and_the_template_have_no_findings() {
     let folder = Folder::new();
     let mine = folder.file("mine.yaml", template());
     for profile in shipped().iter().chain([&mine]) {
-        let (code, told, _) = run(&["check", "--deny", "notes", profile]);
-        assert_eq!(code, Some(0), "{told}");
+        let (code, reported, _) = run(&["check", "--deny", "notes", profile]);
+        assert_eq!(code, Some(0), "{reported}");
         assert!(
-            told.ends_with(&format!("{profile}: no findings\n")),
-            "{told}"
+            reported.ends_with(&format!("{profile}: no findings\n")),
+            "{reported}"
         );
     }
     let (_, text, _) = run(&["check", "--json", &mine]);
@@ -126,11 +126,11 @@ fn every_command_reports_a_profile_that_does_not_fit_and_refuses_an_impossible_v
     let folder = Folder::new();
     folder.file("rules.yaml", RULES);
     let profile = folder.file("mine.yaml", PROFILE.replace("risk: 80", "risk: 84"));
-    let (code, told, _) = run(&["check", &profile]);
+    let (code, reported, _) = run(&["check", &profile]);
     assert_eq!(code, Some(0));
     assert!(
-        told.contains("warning[out-of-reach]: `fail` at risk 84 is never reached"),
-        "{told}"
+        reported.contains("warning[out-of-reach]: `fail` at risk 84 is never reached"),
+        "{reported}"
     );
     let (code, _, _) = run(&["check", "--deny", "warnings", &profile]);
     assert_eq!(code, Some(1));
@@ -139,8 +139,11 @@ fn every_command_reports_a_profile_that_does_not_fit_and_refuses_an_impossible_v
         &["export", "--rust", &profile],
         &["map", &profile],
     ] {
-        let (_, out, told) = run(command);
-        assert!(told.contains("is never reached"), "{command:?}: {told}");
+        let (_, out, reported) = run(command);
+        assert!(
+            reported.contains("is never reached"),
+            "{command:?}: {reported}"
+        );
         assert!(!out.is_empty(), "{command:?}");
     }
 
@@ -153,16 +156,20 @@ fn every_command_reports_a_profile_that_does_not_fit_and_refuses_an_impossible_v
         &["watch", "--profile", &profile, "udpin:127.0.0.1:0"],
         &["export", "--rust", &profile],
     ] {
-        let (code, out, told) = run(command);
-        assert_eq!((code, out.as_str()), (Some(3), ""), "{command:?}: {told}");
+        let (code, out, reported) = run(command);
+        assert_eq!(
+            (code, out.as_str()),
+            (Some(3), ""),
+            "{command:?}: {reported}"
+        );
         assert!(
-            told.contains("neither `warn` nor `fail` can be reached"),
-            "{told}"
+            reported.contains("neither `warn` nor `fail` can be reached"),
+            "{reported}"
         );
     }
-    let (code, told, _) = run(&["check", &profile]);
+    let (code, reported, _) = run(&["check", &profile]);
     assert_eq!(code, Some(1));
-    assert!(told.contains("mine.yaml: 1 error"), "{told}");
+    assert!(reported.contains("mine.yaml: 1 error"), "{reported}");
 }
 
 #[test]
@@ -174,10 +181,10 @@ fn a_mistake_in_the_rule_set_is_shown_in_the_rule_set() {
         &["check", &profile][..],
         &["assess", "--profile", &profile, STEADY],
     ] {
-        let (code, _, told) = run(command);
-        assert_eq!(code, Some(3), "{told}");
-        assert!(told.contains("rules.yaml:9"), "{told}");
-        assert!(told.contains("did you mean `high`?"), "{told}");
+        let (code, _, reported) = run(command);
+        assert_eq!(code, Some(3), "{reported}");
+        assert!(reported.contains("rules.yaml:9"), "{reported}");
+        assert!(reported.contains("did you mean `high`?"), "{reported}");
     }
 }
 
@@ -237,9 +244,9 @@ fn an_empty_battery_determines_the_risk_of_the_shipped_profile() {
     let folder = Folder::new();
     let assess = |battery: &dyn Fn(f64) -> Option<f64>| {
         let log = folder.file("hover.csv", hover(battery));
-        let (code, told, errors) = run(&["assess", "--profile", "flagred-battery", &log]);
+        let (code, reported, errors) = run(&["assess", "--profile", "flagred-battery", &log]);
         assert_eq!(errors, "");
-        (code, told)
+        (code, reported)
     };
     for (level, code, verdict) in [
         (100.0, 0, "GOOD"),
@@ -248,41 +255,44 @@ fn an_empty_battery_determines_the_risk_of_the_shipped_profile() {
         (10.0, 1, "FAIL"),
         (0.0, 1, "FAIL"),
     ] {
-        let (found, told) = assess(&|_| Some(level));
-        assert_eq!(found, Some(code), "{level}: {told}");
-        assert!(told.starts_with(verdict), "{level}: {told}");
+        let (found, reported) = assess(&|_| Some(level));
+        assert_eq!(found, Some(code), "{level}: {reported}");
+        assert!(reported.starts_with(verdict), "{level}: {reported}");
         if verdict != "GOOD" {
-            assert!(told.contains("battery_risk"), "{told}");
+            assert!(reported.contains("battery_risk"), "{reported}");
         }
     }
     // The battery runs empty during the flight.
-    let (_, told) = assess(&|t_s| Some((80.0 - 2.0 * t_s).max(0.0)));
+    let (_, reported) = assess(&|t_s| Some((80.0 - 2.0 * t_s).max(0.0)));
     assert!(
-        told.starts_with("FAIL") && told.contains("The battery fell to "),
-        "{told}"
+        reported.starts_with("FAIL") && reported.contains("The battery fell to "),
+        "{reported}"
     );
     // An unknown level never counts as GOOD.
     for known_s in [0.0, 20.0] {
-        let (code, told) = assess(&|t_s| (t_s < known_s).then_some(80.0));
-        assert_eq!(code, Some(3), "{told}");
-        assert!(told.starts_with("NA"), "{told}");
+        let (code, reported) = assess(&|t_s| (t_s < known_s).then_some(80.0));
+        assert_eq!(code, Some(3), "{reported}");
+        assert!(reported.starts_with("NA"), "{reported}");
     }
     let log = folder.file(
         "without.csv",
         hover(|_| Some(1.0)).replace("battery_remaining_pct", "x"),
     );
-    let (code, told, _) = run(&["assess", "--profile", "flagred-battery", &log]);
+    let (code, reported, _) = run(&["assess", "--profile", "flagred-battery", &log]);
     assert_eq!(code, Some(3));
     assert!(
-        told.contains("needs the signal `battery_remaining_pct`"),
-        "{told}"
+        reported.contains("needs the signal `battery_remaining_pct`"),
+        "{reported}"
     );
     // On board there is one risk only.
     for language in ["--rust", "--c", "--lua"] {
-        let (code, out, told) = run(&["export", language, "flagred-battery"]);
+        let (code, out, reported) = run(&["export", language, "flagred-battery"]);
         assert_eq!((code, out.as_str()), (Some(3), ""), "{language}");
-        assert!(told.contains("`risk` and `battery_risk`"), "{told}");
-        assert!(told.contains("write a profile for each risk"), "{told}");
+        assert!(reported.contains("`risk` and `battery_risk`"), "{reported}");
+        assert!(
+            reported.contains("write a profile for each risk"),
+            "{reported}"
+        );
     }
 }
 
@@ -291,9 +301,9 @@ fn each_risk_needs_only_the_inputs_that_its_rules_read() {
     let folder = Folder::new();
     let assess = |log: String| {
         let log = folder.file("flight.csv", log);
-        let (code, told, errors) = run(&["assess", "--profile", "flagred-battery", &log]);
+        let (code, reported, errors) = run(&["assess", "--profile", "flagred-battery", &log]);
         assert_eq!(errors, "");
-        (code, told)
+        (code, reported)
     };
     let failing = |t_s: f64| match t_s {
         20.0..40.0 => [1.0, 0.0, 1.0, 0.0].map(Some),
@@ -312,11 +322,11 @@ fn each_risk_needs_only_the_inputs_that_its_rules_read() {
         flight(failing, is_known(5.0)),
         without(flight(failing, |_| Some(80.0))),
     ] {
-        let (code, told) = assess(log);
-        assert_eq!(code, Some(1), "{told}");
-        assert!(told.starts_with("FAIL"), "{told}");
-        let told = told.replace("(not shown: battery_risk)", "");
-        assert!(!told.contains("battery_risk"), "{told}");
+        let (code, reported) = assess(log);
+        assert_eq!(code, Some(1), "{reported}");
+        assert!(reported.starts_with("FAIL"), "{reported}");
+        let reported = reported.replace("(not shown: battery_risk)", "");
+        assert!(!reported.contains("battery_risk"), "{reported}");
     }
     // Calm motors are not enough for GOOD, and the reason is the battery.
     for (log, why) in [
@@ -330,20 +340,26 @@ fn each_risk_needs_only_the_inputs_that_its_rules_read() {
             "needs the signal `battery_remaining_pct`",
         ),
     ] {
-        let (code, told) = assess(log);
-        assert_eq!(code, Some(3), "{told}");
-        assert!(told.starts_with("NA") && told.contains(why), "{told}");
+        let (code, reported) = assess(log);
+        assert_eq!(code, Some(3), "{reported}");
+        assert!(
+            reported.starts_with("NA") && reported.contains(why),
+            "{reported}"
+        );
     }
     // The battery causes FAIL, whatever is known of the motors.
-    let (code, told) = assess(flight(lost, |_| Some(0.0)));
-    assert_eq!(code, Some(1), "{told}");
+    let (code, reported) = assess(flight(lost, |_| Some(0.0)));
+    assert_eq!(code, Some(1), "{reported}");
     assert!(
-        told.starts_with("FAIL") && told.contains("battery_risk"),
-        "{told}"
+        reported.starts_with("FAIL") && reported.contains("battery_risk"),
+        "{reported}"
     );
-    let (code, told) = assess(flight(lost, |_| Some(80.0)));
-    assert_eq!(code, Some(3), "{told}");
-    assert!(told.starts_with("NA") && told.contains("motor 3"), "{told}");
+    let (code, reported) = assess(flight(lost, |_| Some(80.0)));
+    assert_eq!(code, Some(3), "{reported}");
+    assert!(
+        reported.starts_with("NA") && reported.contains("motor 3"),
+        "{reported}"
+    );
 }
 
 /// A battery as one more vote of the default rules.
@@ -364,10 +380,10 @@ fn voting(folder: &Folder, rule: &str) -> String {
 fn check_warns_about_an_input_that_is_outvoted() {
     let folder = Folder::new();
     let profile = voting(&folder, "IF battery IS empty THEN risk IS very_high");
-    let (code, told, _) = run(&["check", &profile]);
+    let (code, reported, _) = run(&["check", &profile]);
     assert_eq!(code, Some(0));
-    let told = told.replace(&profile, "mine.yaml");
-    insta::assert_snapshot!(told);
+    let reported = reported.replace(&profile, "mine.yaml");
+    insta::assert_snapshot!(reported);
     let (code, text, _) = run(&["check", "--deny", "warnings", "--json", &profile]);
     assert_eq!(code, Some(1));
     let document: Value = serde_json::from_str(&text).unwrap();
@@ -380,11 +396,11 @@ fn check_warns_about_an_input_that_is_outvoted() {
     );
     // The warning is correct: with an empty battery, the flight is GOOD.
     let log = folder.file("hover.csv", hover(|_| Some(0.0)));
-    let (code, told, errors) = run(&["assess", "--profile", &profile, &log]);
-    assert_eq!((code, errors.as_str()), (Some(0), ""), "{told}");
-    assert!(told.starts_with("GOOD"), "{told}");
+    let (code, reported, errors) = run(&["assess", "--profile", &profile, &log]);
+    assert_eq!((code, errors.as_str()), (Some(0), ""), "{reported}");
+    assert!(reported.starts_with("GOOD"), "{reported}");
     let highest = battery["risk_pct"].as_f64().unwrap();
-    let said = told
+    let said = reported
         .split("highest ")
         .nth(1)
         .unwrap()
@@ -403,11 +419,11 @@ fn check_warns_about_an_input_that_is_outvoted() {
         "at_limit IS none AND battery IS NOT empty THEN",
     );
     folder.file("rules.yaml", guarded);
-    let (code, told, _) = run(&["check", "--deny", "warnings", &profile]);
-    assert_eq!(code, Some(0), "{told}");
-    let (code, told, _) = run(&["assess", "--profile", &profile, &log]);
-    assert_eq!(code, Some(1), "{told}");
-    assert!(told.starts_with("FAIL"), "{told}");
+    let (code, reported, _) = run(&["check", "--deny", "warnings", &profile]);
+    assert_eq!(code, Some(0), "{reported}");
+    let (code, reported, _) = run(&["assess", "--profile", &profile, &log]);
+    assert_eq!(code, Some(1), "{reported}");
+    assert!(reported.starts_with("FAIL"), "{reported}");
 }
 
 /// A profile that reads no motor, its rule set, and a table of loads that rise to `last_kg`.
@@ -435,9 +451,12 @@ fn forklift(folder: &Folder, last_kg: f64, step_s: f64) -> [String; 2] {
 fn a_profile_that_reads_no_motor_does_not_mention_rotors() {
     let folder = Folder::new();
     let [profile, table] = forklift(&folder, 1500.0, 0.1);
-    let (code, told, _) = run(&["check", "--deny", "notes", &profile]);
-    assert_eq!(code, Some(0), "{told}");
-    assert!(told.contains("the profile reads no motors"), "{told}");
+    let (code, reported, _) = run(&["check", "--deny", "notes", &profile]);
+    assert_eq!(code, Some(0), "{reported}");
+    assert!(
+        reported.contains("the profile reads no motors"),
+        "{reported}"
+    );
 
     let html = folder.at("forklift.html");
     let arguments = ["assess", "-v", "--profile", &profile, "--html", &html];
@@ -518,8 +537,8 @@ fn every_output_reports_an_assumed_signal() {
         folder.file("mine.yaml", battery.replace(plain, &input))
     };
     let profile = with("100");
-    let (code, told, _) = run(&["check", "--deny", "notes", &profile]);
-    assert_eq!(code, Some(0), "{told}");
+    let (code, reported, _) = run(&["check", "--deny", "notes", &profile]);
+    assert_eq!(code, Some(0), "{reported}");
 
     // A hover: without the level, with it, and with a failed sensor.
     let flight = |column: &str, level: &dyn Fn(u32) -> String| {
@@ -571,12 +590,12 @@ fn every_output_reports_an_assumed_signal() {
     assert!(code == Some(1) && text.starts_with("FAIL"), "{text}");
 
     let outside = with("120");
-    let (code, told, _) = run(&["check", &outside]);
-    assert_eq!(code, Some(1), "{told}");
+    let (code, reported, _) = run(&["check", &outside]);
+    assert_eq!(code, Some(1), "{reported}");
     assert!(
-        told.contains(
+        reported.contains(
             "`if_missing` of input `battery` is 120, but the range of the input is 0 to 100"
-        ) && told.contains("help: write a number from 0 to 100"),
-        "{told}"
+        ) && reported.contains("help: write a number from 0 to 100"),
+        "{reported}"
     );
 }

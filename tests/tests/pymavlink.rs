@@ -38,8 +38,8 @@ fn watch_works_against_a_stand_in_for_the_simulator() {
         .spawn();
     let mut stand_in = ChildProcess(stand_in.unwrap());
     let mut ports = String::new();
-    let told = stand_in.0.stdout.take().unwrap();
-    BufReader::new(told).read_line(&mut ports).unwrap();
+    let reported = stand_in.0.stdout.take().unwrap();
+    BufReader::new(reported).read_line(&mut ports).unwrap();
     let ports: Vec<String> = ports
         .split_whitespace()
         .map(|port| format!("tcp:127.0.0.1:{port}"))
@@ -62,15 +62,15 @@ fn watch_works_against_a_stand_in_for_the_simulator() {
         .arg(&said)
         .output()
         .unwrap();
-    let told = String::from_utf8(output.stdout).unwrap();
+    let reported = String::from_utf8(output.stdout).unwrap();
     assert!(
         output.status.success(),
-        "{told}{}",
+        "{reported}{}",
         String::from_utf8_lossy(&output.stderr)
     );
     assert!(
-        told.ends_with("all checks hold\n") && told.lines().count() > 25,
-        "{told}"
+        reported.ends_with("all checks hold\n") && reported.lines().count() > 25,
+        "{reported}"
     );
     drop((watch, stand_in));
 }
@@ -101,11 +101,11 @@ fn watch_works_against_the_simulator() {
                 .env("FLAGRED", flagred().get_program())
                 .output()
                 .unwrap();
-            let told = String::from_utf8_lossy(&output.stdout);
+            let reported = String::from_utf8_lossy(&output.stdout);
             let failed = String::from_utf8_lossy(&output.stderr);
             assert!(
                 output.status.success(),
-                "{frame} {on_board:?}\n{told}{failed}"
+                "{frame} {on_board:?}\n{reported}{failed}"
             );
         }
     }
@@ -121,8 +121,8 @@ fn pymavlink_and_watch_understand_each_other() {
             .arg(version)
             .output()
             .unwrap();
-        let told = String::from_utf8_lossy(&output.stdout);
+        let reported = String::from_utf8_lossy(&output.stdout);
         let failed = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{told}{failed}");
+        assert!(output.status.success(), "{reported}{failed}");
     }
 }

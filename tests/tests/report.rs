@@ -241,8 +241,8 @@ fn the_most_severe_finding_is_on_top_and_scales_have_units() {
         assert!(risk.contains(said), "no `{said}`");
     }
     // Each cause has one line, with the motor at its limit.
-    let told = html.matches("2 times, worst ").count();
-    assert_eq!(told, 1);
+    let reported = html.matches("2 times, worst ").count();
+    assert_eq!(reported, 1);
     for said in [
         " away from a limit, where a motor cannot correct anything. Motor 1 was closest to its ",
         "<br>Land now and gently, ",

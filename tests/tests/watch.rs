@@ -29,17 +29,17 @@ fn every_link_gives_the_verdict_of_assess(log: &Path) {
     let flight = flight(log);
     let assessed = assess(log);
     for link in links() {
-        let told = fly_udp(&flight, link, &[], Speed::Fastest);
+        let reported = fly_udp(&flight, link, &[], Speed::Fastest);
         says_what_assess_says(
-            &told,
+            &reported,
             &assessed,
             &format!("{}, {link:?}", log.display()),
             link,
         );
     }
-    let told = fly_tcp(&flight, Speed::Fastest);
+    let reported = fly_tcp(&flight, Speed::Fastest);
     says_what_assess_says(
-        &told,
+        &reported,
         &assessed,
         &format!("{} over TCP", log.display()),
         Link::default(),
@@ -65,9 +65,9 @@ fn says_what_assess_says(
         assert!(share > 0.999, "{case}: {share}");
         assert!(difference <= 2.0, "{case}: {difference} points");
     }
-    check_texts(said, &vehicle.heard);
+    check_texts(said, &vehicle.received);
     if verdict == "GOOD" {
-        assert_eq!(vehicle.heard.texts(), [], "{case}");
+        assert_eq!(vehicle.received.texts(), [], "{case}");
     }
     let code = match verdict {
         "WARN" | "FAIL" => 1,
@@ -141,14 +141,14 @@ fn reference_flights_get_the_verdict_of_assess_in_real_time() {
             scope.spawn(move || {
                 let flight = flight(log);
                 let assessed = assess(log);
-                let told = match link {
+                let reported = match link {
                     Some(link) => fly_udp(&flight, link, &[], Speed::Times(1.0)),
                     None => fly_tcp(&flight, Speed::Times(1.0)),
                 };
                 let case = format!("{}, {link:?}", log.display());
                 let link = link.unwrap_or_default();
-                says_what_assess_says(&told, &assessed, &case, link);
-                let values = told.1.heard.values("FR_RISK");
+                says_what_assess_says(&reported, &assessed, &case, link);
+                let values = reported.1.received.values("FR_RISK");
                 let rate_hz =
                     values.len() as f64 / assessed["summary"]["assessed_s"].as_f64().unwrap();
                 assert!((1.0..=2.1).contains(&rate_hz), "{case}: {rate_hz} Hz");
@@ -174,7 +174,7 @@ fn a_day_of_flights_takes_no_more_memory_than_an_hour() {
     let (mut flights, mut hour_kb) = (0, None);
     while vehicle.clock_s < DAY_S {
         vehicle.fly_on(&flight, Speed::Fastest, 0.0, f64::INFINITY);
-        vehicle.heard.messages.clear();
+        vehicle.received.messages.clear();
         vehicle.sent.clear();
         vehicle.clock_s += length_s;
         flights += 1;

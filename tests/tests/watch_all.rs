@@ -305,8 +305,8 @@ fn several_endpoints_require_the_option_all_and_send_nothing() {
         (&[][..], "ENDPOINT"),
     ] {
         let output = flagred().arg("watch").args(arguments).output().unwrap();
-        let told = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{told}");
-        assert!(told.contains(said), "{told}");
+        let reported = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{reported}");
+        assert!(reported.contains(said), "{reported}");
     }
 }

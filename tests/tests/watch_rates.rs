@@ -47,8 +47,8 @@ fn a_vehicle_at_1_hz_has_no_risk_and_no_verdict() {
         (said.one("ended")["worst"].as_str(), said.code),
         (Some("NA"), Some(3))
     );
-    assert_eq!(vehicle.heard.values("FR_RISK").len(), 0);
-    assert_eq!(vehicle.heard.texts(), []);
+    assert_eq!(vehicle.received.values("FR_RISK").len(), 0);
+    assert_eq!(vehicle.received.texts(), []);
 }
 
 /// Another station slows down the motor commands in flight; the watch repeats its request, and the risk is known again.
@@ -110,7 +110,7 @@ fn motors_on_outputs_9_to_12_and_17_to_20_get_the_risk_of_assess() {
             share > 0.999 && difference <= 2.0,
             "{first}: {share}, {difference}"
         );
-        check_texts(&said, &vehicle.heard);
+        check_texts(&said, &vehicle.received);
     }
 }
 
@@ -126,10 +126,11 @@ fn the_parameters_behind_the_verdict_are_reported_and_recorded() {
     vehicle.fly(&flight, Speed::Fastest, 0.0, 80.0);
     let said = watch.end();
     let ready = said.one("ready");
-    let told = ready["parameters"].as_array().unwrap();
+    let reported = ready["parameters"].as_array().unwrap();
     let has = |name: &str| {
-        told.iter()
-            .any(|told| told["name"] == name && told["source"] == "PARAM_VALUE")
+        reported
+            .iter()
+            .any(|reported| reported["name"] == name && reported["source"] == "PARAM_VALUE")
     };
     assert!(
         has("MOT_PWM_MIN") && has("MOT_SPIN_MAX") && has("FRAME_CLASS"),

@@ -25,8 +25,11 @@ fn a_recording_gives_assess_what_watch_said(log: &Path) {
         Speed::Fastest,
     );
     // A recording is not overwritten.
-    let (code, told) = refused("udpin:127.0.0.1:0", &["--record", file]);
-    assert!(code == Some(2) && told.contains("exists already"), "{told}");
+    let (code, reported) = refused("udpin:127.0.0.1:0", &["--record", file]);
+    assert!(
+        code == Some(2) && reported.contains("exists already"),
+        "{reported}"
+    );
     let assessed = assess(&path);
     assert_eq!(assessed["log"]["format"], "MAVLink tlog");
     assert_eq!(assessed["read"]["skipped_bytes"], 0);

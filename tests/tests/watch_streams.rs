@@ -52,13 +52,13 @@ impl Replay {
     }
 
     fn take(&mut self, watch: &mut Watch<'_>) {
-        let told = watch.told();
-        let events = told
+        let reported = watch.reported();
+        let events = reported
             .json
             .iter()
             .map(|line| serde_json::from_str(line).unwrap());
         self.events.extend(events);
-        for bytes in &told.packets {
+        for bytes in &reported.packets {
             let PacketScan::Packet(packet) = next_packet(bytes) else {
                 panic!("{bytes:?}")
             };

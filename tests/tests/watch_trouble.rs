@@ -25,7 +25,7 @@ fn a_silent_link_and_a_reboot_are_reported_and_discard_the_old_risk() {
     let air = flight.in_air.as_ref().unwrap().spans[0];
     vehicle.fly(&flight, Speed::Fastest, air.start_s, air.start_s + 40.0);
     vehicle.linger(Duration::from_millis(2300));
-    let values_then = vehicle.heard.values("FR_RISK").len();
+    let values_then = vehicle.received.values("FR_RISK").len();
     // The vehicle returns, half a minute later on its own clock: the windows start empty.
     vehicle.fly(
         &flight,
@@ -39,7 +39,7 @@ fn a_silent_link_and_a_reboot_are_reported_and_discard_the_old_risk() {
         air.start_s + 71.0,
         air.start_s + 80.0,
     );
-    assert!(vehicle.heard.values("FR_RISK").len() > values_then);
+    assert!(vehicle.received.values("FR_RISK").len() > values_then);
     // The vehicle reboots, which takes time.
     vehicle.linger(Duration::from_millis(2300));
     for t_ms in [100, 200, 300, 400] {
@@ -73,7 +73,7 @@ fn a_silent_link_and_a_reboot_are_reported_and_discard_the_old_risk() {
         (said.one("ended")["worst"].as_str(), said.code),
         (Some("NA"), Some(3))
     );
-    check_texts(&said, &vehicle.heard);
+    check_texts(&said, &vehicle.received);
 }
 
 #[test]
@@ -153,7 +153,7 @@ fn garbage_and_extreme_values_are_counted_and_raise_no_alarm() {
         "{ended}"
     );
     assert_eq!(said.verdict(), "GOOD");
-    assert_eq!(vehicle.heard.texts(), []);
+    assert_eq!(vehicle.received.texts(), []);
     assert!(said.has_note("not MAVLink packets"));
     for event in said.all("risk") {
         let risk = event["risk"].as_f64();
@@ -244,39 +244,42 @@ fn packets_with_extreme_values_are_valid_packets() {
 #[test]
 fn unavailable_ports_are_reported_with_a_remedy() {
     let taken = UdpSocket::bind("127.0.0.1:0").unwrap();
-    let (code, told) = refused(&format!("udpin:{}", taken.local_addr().unwrap()), &[]);
+    let (code, reported) = refused(&format!("udpin:{}", taken.local_addr().unwrap()), &[]);
     assert_eq!(code, Some(3));
     assert!(
-        told.contains("cannot be opened") && told.contains("another program"),
-        "{told}"
+        reported.contains("cannot be opened") && reported.contains("another program"),
+        "{reported}"
     );
 
     let taken = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = taken.local_addr().unwrap();
-    let (code, told) = refused(&format!("tcpin:{address}"), &[]);
+    let (code, reported) = refused(&format!("tcpin:{address}"), &[]);
     assert!(
-        code == Some(3) && told.contains("another program"),
-        "{told}"
+        code == Some(3) && reported.contains("another program"),
+        "{reported}"
     );
     drop(taken);
-    let (code, told) = refused(&format!("tcp:{address}"), &["--no-wait"]);
+    let (code, reported) = refused(&format!("tcp:{address}"), &["--no-wait"]);
     assert!(
-        code == Some(3) && told.contains("start the vehicle"),
-        "{told}"
+        code == Some(3) && reported.contains("start the vehicle"),
+        "{reported}"
     );
 
-    let (code, told) = refused("/dev/flagred-no-such-port:57600", &["--no-wait"]);
+    let (code, reported) = refused("/dev/flagred-no-such-port:57600", &["--no-wait"]);
     assert!(
-        code == Some(3) && told.contains("check that the cable is plugged in"),
-        "{told}"
+        code == Some(3) && reported.contains("check that the cable is plugged in"),
+        "{reported}"
     );
-    let (code, told) = refused("somewhere", &[]);
+    let (code, reported) = refused("somewhere", &[]);
     assert!(
-        code == Some(2) && told.contains("is not an endpoint"),
-        "{told}"
+        code == Some(2) && reported.contains("is not an endpoint"),
+        "{reported}"
     );
-    let (code, told) = refused("udpout:127.0.0.1:9", &["--no-send"]);
-    assert!(code == Some(2) && told.contains("sends first"), "{told}");
+    let (code, reported) = refused("udpout:127.0.0.1:9", &["--no-send"]);
+    assert!(
+        code == Some(2) && reported.contains("sends first"),
+        "{reported}"
+    );
 }
 
 /// The watch runs as a user who may not open the port.
@@ -302,11 +305,11 @@ fn a_serial_port_without_permission_is_reported_with_a_remedy() {
             return;
         }
     };
-    let told = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(3), "{told}");
+    let reported = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(3), "{reported}");
     assert!(
-        told.contains("cannot be opened") && told.contains("`dialout`"),
-        "{told}"
+        reported.contains("cannot be opened") && reported.contains("`dialout`"),
+        "{reported}"
     );
 }
 

@@ -75,16 +75,16 @@ fn a_second_sender_is_reported_and_ignored() {
     assert_eq!(said.one("locked")["system"], 1);
     assert_eq!(said.one("ready")["range"]["high"], 2000.0);
     assert_eq!(said.all("level").count() + said.all("landed").count(), 0);
-    let told: Vec<&str> = said
+    let reported: Vec<&str> = said
         .all("doubt")
         .map(|doubt| doubt["what"].as_str().unwrap())
         .collect();
-    assert_eq!(told, ["other_component", "second_sender"]);
+    assert_eq!(reported, ["other_component", "second_sender"]);
     let not_believed = &said.one("ended")["not_believed"];
     assert_eq!(not_believed["second_sender"], 80);
     assert_eq!(said.verdict(), "GOOD");
-    assert!(!vehicle.heard.values("FR_RISK").is_empty());
-    assert!(liar.heard.messages.is_empty(), "{:?}", liar.heard);
+    assert!(!vehicle.received.values("FR_RISK").is_empty());
+    assert!(liar.received.messages.is_empty(), "{:?}", liar.received);
     valid(&said);
     // The packets of the liar are not used either when the recording is assessed.
     let assessed = assess(Path::new(&file));
@@ -128,19 +128,19 @@ fn only_one_of_two_watches_sends() {
     }
     vehicle.fly(&flight, Speed::Times(4.0), start_s, start_s + 20.0);
     let (first, second) = (first.end(), second.end());
-    let told = second.one("another_watch");
+    let reported = second.one("another_watch");
     assert_eq!(
-        (&told["component"], &told["speaks"]),
+        (&reported["component"], &reported["speaks"]),
         (&json!(191), &json!(false))
     );
     assert_eq!(
         first
             .all("another_watch")
-            .filter(|told| told["speaks"] == false)
+            .filter(|reported| reported["speaks"] == false)
             .count(),
         0
     );
-    assert!(vehicle.heard.values("FR_RISK").len() > 2);
+    assert!(vehicle.received.values("FR_RISK").len() > 2);
     assert_eq!(vehicle.heard_elsewhere.values("FR_RISK").len(), 0);
     // Both watches report the risk.
     for said in [&first, &second] {
@@ -179,7 +179,7 @@ fn with_a_key_only_signed_packets_are_accepted_and_sent() {
     assert_eq!(ended["not_believed"]["second_sender"], 0);
     assert!(said.has_note("not signed") && said.has_note("signature"));
     assert_eq!(said.verdict(), "GOOD");
-    assert!(!vehicle.heard.values("FR_RISK").is_empty());
+    assert!(!vehicle.received.values("FR_RISK").is_empty());
     let skipped = vehicle.skipped();
     assert_eq!(
         (skipped.unsigned, skipped.bad_signatures),
@@ -189,10 +189,10 @@ fn with_a_key_only_signed_packets_are_accepted_and_sent() {
     valid(&said);
 
     let wrong = folder.file("wrong", "secret");
-    let (code, told) = refused("udpin:127.0.0.1:0", &["--key", &wrong]);
+    let (code, reported) = refused("udpin:127.0.0.1:0", &["--key", &wrong]);
     assert!(
-        code == Some(3) && told.contains("is not a key") && told.contains("64 hex"),
-        "{told}"
+        code == Some(3) && reported.contains("is not a key") && reported.contains("64 hex"),
+        "{reported}"
     );
 }
 

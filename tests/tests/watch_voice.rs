@@ -23,7 +23,7 @@ fn late_ms(seconds: f64) -> Vec<f64> {
     assert!(end_s <= air.end_s, "the flight is too short");
     vehicle.fly(&flight, Speed::Times(2.0), air.start_s, end_s);
     watch.end();
-    let values = vehicle.heard.values("FR_RISK");
+    let values = vehicle.received.values("FR_RISK");
     assert!(values.len() as f64 >= 1.5 * seconds, "{}", values.len());
     let mut late_ms: Vec<f64> = values
         .iter()
@@ -69,14 +69,14 @@ fn watch_is_an_onboard_controller_and_sends_values_every_half_second() {
         &["--component", "192"],
         Speed::Fastest,
     );
-    let heard = &vehicle.heard;
+    let received = &vehicle.received;
     assert!(
-        heard
+        received
             .messages
             .iter()
             .all(|(_, system, component, _)| (*system, *component) == (1, 192))
     );
-    let beat = heard
+    let beat = received
         .messages
         .iter()
         .find_map(|(_, _, _, message)| match message {
@@ -86,7 +86,7 @@ fn watch_is_an_onboard_controller_and_sends_values_every_half_second() {
     let beat = beat.unwrap();
     assert_eq!((beat.mavtype as u8, beat.autopilot as u8), (18, 8));
     for name in ["FR_RISK", "FR_ELEV"] {
-        let values = heard.values(name);
+        let values = received.values(name);
         assert!(!values.is_empty(), "{name}");
         assert!(
             values

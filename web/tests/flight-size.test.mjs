@@ -8,9 +8,9 @@ import { STEADY, folder, room } from './flights.mjs';
 import { isTimed, opened, tab } from './page.mjs';
 
 const LOG_BYTES = 100_000_000;
-const MOST_S = 5;
-const MOST_TASK_MS = 50;
-const MOST_MEMORY_KB = 600_000;
+const MAX_S = 5;
+const MAX_TASK_MS = 50;
+const MAX_MEMORY_KB = 600_000;
 const TRIES = 3;
 
 const { chromium, server } = await opened();
@@ -120,16 +120,16 @@ test('a log of 100 MB', { timeout: 600_000 }, async (context) => {
   writeFileSync(path, longLog(readFileSync(STEADY), LOG_BYTES));
   const all = [];
   const best = (name) => Math.min(...all.map((measured) => measured[name]));
-  const isGood = () => best('assessed_s') < MOST_S && best('longest_ms') < MOST_TASK_MS;
+  const isGood = () => best('assessed_s') < MAX_S && best('longest_ms') < MAX_TASK_MS;
   while (all.length < TRIES && !(all.length > 0 && isGood())) {
     all.push(await measure(path));
     context.diagnostic(JSON.stringify(all.at(-1)));
   }
   for (const { badge, processor_ms, memory_kb } of all) {
     assert.equal(badge, 'GOOD');
-    assert.ok(processor_ms > 0 && processor_ms < MOST_TASK_MS, `a task took ${processor_ms} ms of a processor`);
-    assert.ok(memory_kb < MOST_MEMORY_KB, `${memory_kb} kB`);
+    assert.ok(processor_ms > 0 && processor_ms < MAX_TASK_MS, `a task took ${processor_ms} ms of a processor`);
+    assert.ok(memory_kb < MAX_MEMORY_KB, `${memory_kb} kB`);
   }
-  assert.ok(best('assessed_s') < MOST_S, `${best('assessed_s')} s`);
-  assert.ok(!isTimed || best('longest_ms') < MOST_TASK_MS, `the longest task took ${best('longest_ms')} ms`);
+  assert.ok(best('assessed_s') < MAX_S, `${best('assessed_s')} s`);
+  assert.ok(!isTimed || best('longest_ms') < MAX_TASK_MS, `the longest task took ${best('longest_ms')} ms`);
 });

@@ -13,7 +13,7 @@ use flagred::{
 use flagred_flightlog::Flight;
 use flagred_report::{
     document::{FindingDocument, document},
-    finding::Teller,
+    finding::FindingContext,
     moment,
     page::{self, Subject},
 };
@@ -107,7 +107,7 @@ impl AssessmentData {
             return Ok(json_text.clone());
         }
         let (_, flight, assessed) = self.parts(py)?;
-        let teller = Teller {
+        let teller = FindingContext {
             estimator: &self.loaded.estimator,
             motors: &flight.motors,
         };
@@ -157,7 +157,7 @@ pub(crate) fn _page(title: &str, body: String) -> String {
 }
 
 /// Verdict, findings and summary, in JSON.
-pub(crate) fn json_text(assessed: &Assessment, teller: Teller<'_>) -> String {
+pub(crate) fn json_text(assessed: &Assessment, teller: FindingContext<'_>) -> String {
     let findings = assessed.findings.iter();
     let findings: Vec<_> = findings.map(|f| FindingDocument::new(f, teller)).collect();
     json!({

@@ -47,7 +47,7 @@ thread_local! {
     static KEPT: RefCell<Vec<CachedScratch>> = const { RefCell::new(Vec::new()) };
 }
 
-const MOST_KEPT: usize = 8;
+const MAX_KEPT: usize = 8;
 
 /// The values to evaluate: numbers, or a value for each row.
 pub(crate) enum Inputs<'py> {
@@ -72,7 +72,7 @@ impl CompiledRuleSet {
     }
 
     /// Returns the arguments in the order of the inputs.
-    pub(crate) fn asked<'py>(
+    pub(crate) fn requested<'py>(
         &self,
         py: Python<'py>,
         args: &Bound<'py, PyTuple>,
@@ -191,7 +191,7 @@ impl CompiledRuleSet {
             let at = match kept.iter().position(|kept| kept.id == self.id) {
                 Some(at) => at,
                 None => {
-                    kept.truncate(MOST_KEPT - 1);
+                    kept.truncate(MAX_KEPT - 1);
                     let outputs = self.engine.output_names().len();
                     let new = CachedScratch {
                         id: self.id,

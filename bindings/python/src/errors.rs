@@ -49,8 +49,8 @@ pub(crate) fn os_error(
     let help = help.map_or(String::new(), |help| format!(" ({help})"));
     Ok(match error.raw_os_error() {
         Some(number) => {
-            let told = py.import("os")?.call_method1("strerror", (number,))?;
-            PyOSError::new_err((number, format!("{told}{help}"), path.to_owned()))
+            let reported = py.import("os")?.call_method1("strerror", (number,))?;
+            PyOSError::new_err((number, format!("{reported}{help}"), path.to_owned()))
         }
         None => PyOSError::new_err(format!("`{path}` cannot be read: {error}{help}")),
     })

@@ -81,12 +81,12 @@ impl EvaluationFailure {
 }
 
 /// The shipped profiles that read only the motors, and the given ones.
-fn estimators(py: Python<'_>, asked: &[PyRef<'_, Profile>]) -> PyResult<Estimators> {
+fn estimators(py: Python<'_>, requested: &[PyRef<'_, Profile>]) -> PyResult<Estimators> {
     let mut estimators = Estimators::default();
     for name in shipped::motor_profile_names() {
         estimators.add(name, Profile::load(py, name)?.loaded.estimator.clone());
     }
-    for profile in asked {
+    for profile in requested {
         if !estimators.has(&profile.file) {
             estimators.add(&profile.file, profile.loaded.estimator.clone());
         }

@@ -6,7 +6,7 @@ use flagred::{
     flight::Assessor,
     monitor::{Craft, Sample, Update as MonitorUpdate, counted},
 };
-use flagred_report::{document::FindingDocument, finding::Teller};
+use flagred_report::{document::FindingDocument, finding::FindingContext};
 use pyo3::prelude::*;
 use serde_json::json;
 
@@ -83,8 +83,8 @@ impl MonitorData {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn teller(&self) -> Teller<'_> {
-        Teller {
+    fn teller(&self) -> FindingContext<'_> {
+        FindingContext {
             estimator: &self.loaded.estimator,
             motors: &[],
         }

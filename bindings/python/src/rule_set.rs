@@ -95,7 +95,7 @@ fn answer<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let (py, source) = (rule_set.py(), rule_set.get().source());
     let compiled = source.compiled(py)?;
-    match compiled.asked(py, args, named)? {
+    match compiled.requested(py, args, named)? {
         Inputs::Numbers(numbers) => compiled.point(py, &numbers, with_reasons),
         Inputs::Arrays(values) => compiled.arrays(py, &values, threads, with_reasons),
         Inputs::Frame(frame) => by_frame(rule_set, frame, threads, with_reasons),
@@ -480,7 +480,7 @@ impl RuleSet {
         static EXPLAIN: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
         let (py, source) = (slf.py(), slf.get().source());
         let compiled = source.compiled(py)?;
-        let numbers = match compiled.asked(py, args, named)? {
+        let numbers = match compiled.requested(py, args, named)? {
             Inputs::Numbers(numbers) => numbers,
             Inputs::Frame(frame) => {
                 let explain = EXPLAIN.import(py, "flagred._frames", "explain")?;

@@ -109,7 +109,7 @@ pub(crate) fn stoppable<T: Send + 'static>(
 fn listening<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> T + Send + 'static,
-    mut heard: impl FnMut(PyErr) -> PyResult<()>,
+    mut received: impl FnMut(PyErr) -> PyResult<()>,
 ) -> PyResult<T> {
     /// The interval between checks for Ctrl-C, too short to be noticed as a delay.
     const LISTEN_EVERY: Duration = Duration::from_millis(50);
@@ -119,7 +119,7 @@ fn listening<T: Send + 'static>(
         let receiver = &mut receiver;
         match py.detach(move || receiver.recv_timeout(LISTEN_EVERY)) {
             Ok(done) => return Ok(done),
-            Err(mpsc::RecvTimeoutError::Timeout) => py.check_signals().or_else(&mut heard)?,
+            Err(mpsc::RecvTimeoutError::Timeout) => py.check_signals().or_else(&mut received)?,
             Err(mpsc::RecvTimeoutError::Disconnected) => {
                 return Err(PyRuntimeError::new_err(
                     "the calculation ended without a result",

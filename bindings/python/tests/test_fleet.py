@@ -55,7 +55,7 @@ def here(monkeypatch: pytest.MonkeyPatch) -> None:
         return done
 
     monkeypatch.setattr(run, "_work", work)
-    monkeypatch.setattr(fleet.shards, "MOST_BYTES", 100_000)
+    monkeypatch.setattr(fleet.shards, "MAX_BYTES", 100_000)
 
 
 def table(out: Path, kind: str) -> pa.Table:

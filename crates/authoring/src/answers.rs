@@ -1,13 +1,13 @@
 //! Results about a rule set, as JSON documents for programs.
 
-use flagred::check::Alone;
+use flagred::check::OutvotedInput;
 use fuzzy::{check, diagnostic::Diagnostic, engine, model::ProvenanceStep};
 use serde::Serialize;
 
-use crate::Examined;
+use crate::Examination;
 
 // The versions of the layouts increase when a name changes its meaning or is removed.
-/// The layout of [`Checked`].
+/// The layout of [`CheckDocument`].
 const CHECK: &str = "flagred.check/1";
 /// The layout of [`Explained`].
 const EXPLAIN: &str = "flagred.explain/1";
@@ -15,7 +15,7 @@ const EXPLAIN: &str = "flagred.explain/1";
 /// The findings about a rule set or a profile: `flagred check --json`.
 #[derive(Debug, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Checked<'a> {
+pub struct CheckDocument<'a> {
     #[cfg_attr(feature = "schema", schemars(extend("const" = CHECK)))]
     schema: &'static str,
     /// The path of the file, as given.
@@ -38,24 +38,24 @@ pub struct Checked<'a> {
     report: Option<&'a check::Report>,
     /// The highest risk that each input of a profile causes while all other inputs are calm; absent for a rule set.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schema", schemars(with = "[Alone]"))]
-    alone: Option<&'a [Alone]>,
+    #[cfg_attr(feature = "schema", schemars(with = "[OutvotedInput]"))]
+    alone: Option<&'a [OutvotedInput]>,
 }
 
-impl<'a> Checked<'a> {
+impl<'a> CheckDocument<'a> {
     /// The findings of a rule set.
-    pub fn rules(file: &'a str, examined: &'a Examined) -> Checked<'a> {
+    pub fn rules(file: &'a str, examined: &'a Examination) -> CheckDocument<'a> {
         let model = examined
             .analysed
             .as_ref()
             .map(|(document, _)| &document.model);
-        Checked {
+        CheckDocument {
             model: model.map(|model| model.name.as_str()),
             provenance: model.map_or(&[], |model| &model.provenance),
             accepted: examined.accepted(),
             report: examined.analysed.as_ref().map(|(_, report)| report),
             alone: None,
-            ..Checked::profile(file, None, &examined.findings.0, &[])
+            ..CheckDocument::profile(file, None, &examined.findings.0, &[])
         }
     }
 
@@ -64,9 +64,9 @@ impl<'a> Checked<'a> {
         file: &'a str,
         name: Option<&'a str>,
         findings: &'a [Diagnostic],
-        alone: &'a [Alone],
-    ) -> Checked<'a> {
-        Checked {
+        alone: &'a [OutvotedInput],
+    ) -> CheckDocument<'a> {
+        CheckDocument {
             schema: CHECK,
             file,
             model: None,

@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 
 use flagred::{
-    check::{Alone, alone, outvoted},
+    check::{OutvotedInput, alone, outvoted},
     estimator::Estimator,
     loaded::{self, is_profile},
     profile::Profile,
@@ -99,7 +99,7 @@ impl Document {
 
     /// The highest risk that each input of a profile causes while all other inputs are calm; empty for a rule set and for a
     /// profile with errors.
-    pub fn alone(&self) -> Vec<Alone> {
+    pub fn alone(&self) -> Vec<OutvotedInput> {
         self.estimator().map(alone).unwrap_or_default()
     }
 
@@ -140,14 +140,14 @@ pub(crate) fn partial(source: &Source) -> Option<PartialModel> {
 
 /// The result of examining a rule set.
 #[derive(Debug)]
-pub struct Examined<'s> {
+pub struct Examination<'s> {
     /// All findings.
     pub findings: Findings,
     /// The rule set and its analysis, if it can be analysed.
     pub analysed: Option<(&'s format::Document, check::Report)>,
 }
 
-impl Examined<'_> {
+impl Examination<'_> {
     /// The findings that the author accepts.
     pub fn accepted(&self) -> Vec<check::AcceptedFindings> {
         let of = |(document, report): &(&format::Document, check::Report)| {
@@ -164,18 +164,18 @@ impl Examined<'_> {
 pub fn examine<'s>(
     source: &'s Source,
     options: &check::Options,
-) -> Result<Examined<'s>, Box<Diagnostic>> {
+) -> Result<Examination<'s>, Box<Diagnostic>> {
     let (document, engine) = match (source.document(), source.engine()) {
         (Ok(document), Ok(engine)) => (document, engine),
         (Err(findings), _) | (_, Err(findings)) => {
-            return Ok(Examined {
+            return Ok(Examination {
                 findings,
                 analysed: None,
             });
         }
     };
     let (findings, report) = check::document(document, engine, source.text(), options)?;
-    Ok(Examined {
+    Ok(Examination {
         findings: provenance::with_edited(findings, document, source.text()),
         analysed: Some((document, report)),
     })

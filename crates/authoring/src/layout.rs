@@ -14,7 +14,7 @@ const WIDTH: usize = 120;
 
 /// The reason why a text cannot be formatted.
 #[derive(Debug)]
-pub enum Unformatted {
+pub enum LayoutError {
     /// The text is not YAML.
     NotYaml(Findings),
     /// The text is neither a rule set nor a profile, so it may belong to another program.
@@ -23,12 +23,12 @@ pub enum Unformatted {
     Other(String),
 }
 
-impl fmt::Display for Unformatted {
+impl fmt::Display for LayoutError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Unformatted::NotYaml(findings) => findings.fmt(f),
-            Unformatted::Foreign => f.write_str("the file is neither a rule set nor a profile"),
-            Unformatted::Other(why) => f.write_str(why),
+            LayoutError::NotYaml(findings) => findings.fmt(f),
+            LayoutError::Foreign => f.write_str("the file is neither a rule set nor a profile"),
+            LayoutError::Other(why) => f.write_str(why),
         }
     }
 }
@@ -38,10 +38,10 @@ impl fmt::Display for Unformatted {
 ///
 /// # Errors
 /// Returns the reason if the text cannot be formatted.
-pub fn formatted(text: &str) -> Result<String, Unformatted> {
-    let before = fuzzy::yaml::read(text).map_err(Unformatted::NotYaml)?;
+pub fn formatted(text: &str) -> Result<String, LayoutError> {
+    let before = fuzzy::yaml::read(text).map_err(LayoutError::NotYaml)?;
     if !is_ours(&before) {
-        return Err(Unformatted::Foreign);
+        return Err(LayoutError::Foreign);
     }
     let document = fuzzy::yaml::parse(text).ok();
     let capitals = document.as_ref().map(|rules| with_capitals(text, rules));
@@ -49,7 +49,7 @@ pub fn formatted(text: &str) -> Result<String, Unformatted> {
     options.layout.print_width = WIDTH;
     options.language.brace_spacing = false;
     let formatted = pretty_yaml::format_text(capitals.as_deref().unwrap_or(text), &options)
-        .map_err(|error| Unformatted::Other(error.to_string()))?;
+        .map_err(|error| LayoutError::Other(error.to_string()))?;
     let same = match document {
         Some(document) => {
             fuzzy::yaml::parse(&formatted).is_ok_and(|new| new.model == document.model)
@@ -61,7 +61,7 @@ pub fn formatted(text: &str) -> Result<String, Unformatted> {
     };
     match same {
         true => Ok(formatted),
-        false => Err(Unformatted::Other(
+        false => Err(LayoutError::Other(
             "another layout would change its meaning".into(),
         )),
     }
@@ -137,7 +137,7 @@ rules:
     fn unreadable_text_is_not_changed() {
         for broken in ["a: [1", ""] {
             let found = formatted(broken);
-            assert!(matches!(found, Err(Unformatted::NotYaml(_))), "{broken}");
+            assert!(matches!(found, Err(LayoutError::NotYaml(_))), "{broken}");
         }
         for foreign in [
             "services:\n   web: {image: nginx}\n",
@@ -148,7 +148,7 @@ rules:
             "flagred: {image: nginx}\n",
         ] {
             let found = formatted(foreign);
-            assert!(matches!(found, Err(Unformatted::Foreign)), "{foreign}");
+            assert!(matches!(found, Err(LayoutError::Foreign)), "{foreign}");
         }
         assert_eq!(
             formatted("flagred: 1\nname:   x\n").unwrap(),

@@ -25,7 +25,7 @@ pub struct Mapped<'a> {
 }
 
 /// The maximum number of combinations of fixed values that are tried.
-const MOST_TRIED: usize = 1000;
+const MAX_TRIED: usize = 1000;
 
 /// An input is fixed at another value than the middle of its range only if the variation of the output then increases
 /// by at least this share of the output's range.
@@ -167,7 +167,7 @@ pub fn held(
         .iter()
         .filter_map(|c| c.first().copied())
         .collect();
-    while candidates.iter().map(Vec::len).product::<usize>() > MOST_TRIED {
+    while candidates.iter().map(Vec::len).product::<usize>() > MAX_TRIED {
         let longest = candidates.iter_mut().max_by_key(|c| c.len());
         longest.into_iter().for_each(|c| c.truncate(c.len() / 2));
     }
@@ -213,9 +213,9 @@ fn variation(mapped: &Mapped<'_>, point: &[f64], axes: &[(usize, Vec<f64>)]) -> 
             }
         }
         let engine = &mapped.engine;
-        let told = engine.evaluate_with(&mut scratch, &point, &mut outcomes);
+        let reported = engine.evaluate_with(&mut scratch, &point, &mut outcomes);
         let value = outcomes.get(mapped.output).and_then(Outcome::value);
-        if let (Ok(()), Some(value)) = (told, value) {
+        if let (Ok(()), Some(value)) = (reported, value) {
             (least, most) = (least.min(value), most.max(value));
         }
     }

@@ -30,7 +30,7 @@ pub enum Part {
 
 /// The positions of the names and the rules of a rule set, in bytes.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Places {
+pub struct EntryPositions {
     /// The name of each variable, inputs first, and the names of its terms.
     pub variables: Vec<(Range<usize>, Vec<Range<usize>>)>,
     /// The rules.
@@ -38,11 +38,11 @@ pub struct Places {
 }
 
 /// Returns the positions of everything that can be renamed or removed; `None` if the text is not a rule set.
-pub fn places(document: &Document) -> Option<Places> {
+pub fn places(document: &Document) -> Option<EntryPositions> {
     let spans = &document.rules()?.spans;
     let variables = spans.inputs.iter().chain(&spans.outputs);
     let terms = |terms: &[fuzzy::format::TermSpans]| terms.iter().map(|t| t.name.clone()).collect();
-    Some(Places {
+    Some(EntryPositions {
         variables: variables
             .map(|v| (v.name.clone(), terms(&v.terms)))
             .collect(),

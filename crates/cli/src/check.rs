@@ -8,11 +8,11 @@ use std::{
 };
 
 use flagred::{
-    check::{Alone, alone},
+    check::{OutvotedInput, alone},
     profile::Profile,
     verdict::Level,
 };
-use flagred_authoring::{Examined, answers::Checked, is_profile, provenance};
+use flagred_authoring::{Examination, answers::CheckDocument, is_profile, provenance};
 use fuzzy::{
     Source, check,
     diagnostic::{Findings, Severity},
@@ -88,7 +88,7 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
         let (of_profile, examined) = if is_profile(&source) {
             let (profile, findings, alone) = examine_profile(path, &source)?;
             let analysed = None;
-            (Some((profile, alone)), Examined { findings, analysed })
+            (Some((profile, alone)), Examination { findings, analysed })
         } else {
             (None, examine(&source, arguments)?)
         };
@@ -135,9 +135,9 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
                 let json = match &of_profile {
                     Some((profile, alone)) => {
                         let name = profile.as_ref().map(|profile| profile.name.as_str());
-                        Checked::profile(&file, name, &findings.0, alone)
+                        CheckDocument::profile(&file, name, &findings.0, alone)
                     }
-                    None => Checked::rules(&file, &examined),
+                    None => CheckDocument::rules(&file, &examined),
                 };
                 serde_json::to_writer_pretty(&mut out, &json).map_err(std::io::Error::from)?;
                 writeln!(out)?;
@@ -160,7 +160,7 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
 }
 
 /// Returns all findings, and the analysis if the rule set can be analysed.
-fn examine<'s>(source: &'s Source, arguments: &Arguments) -> Result<Examined<'s>, Failure> {
+fn examine<'s>(source: &'s Source, arguments: &Arguments) -> Result<Examination<'s>, Failure> {
     let mut options = check::Options::default();
     options.coverage = arguments.coverage;
     options.monotone = arguments.claims.monotone()?;
@@ -175,7 +175,7 @@ fn examine<'s>(source: &'s Source, arguments: &Arguments) -> Result<Examined<'s>
 fn examine_profile(
     path: &Path,
     source: &Source,
-) -> Result<(Option<Profile>, Findings, Vec<Alone>), Failure> {
+) -> Result<(Option<Profile>, Findings, Vec<OutvotedInput>), Failure> {
     let profile = match Profile::from_source(source) {
         Ok(profile) => profile,
         Err(findings) => return Ok((None, findings, Vec::new())),
@@ -190,7 +190,7 @@ fn examine_profile(
 }
 
 /// A line for each input: `battery  0 (empty)  battery_risk 95 %, FAIL`.
-fn write_alone(out: &mut impl Write, file: &str, alone: &[Alone]) -> Result<(), Failure> {
+fn write_alone(out: &mut impl Write, file: &str, alone: &[OutvotedInput]) -> Result<(), Failure> {
     if alone.is_empty() {
         return Ok(());
     }
@@ -211,7 +211,7 @@ fn write_alone(out: &mut impl Write, file: &str, alone: &[Alone]) -> Result<(), 
     Ok(())
 }
 
-fn row(one: &Alone) -> [String; 3] {
+fn row(one: &OutvotedInput) -> [String; 3] {
     let value = number(one.value, 4);
     let value = match &one.term {
         Some(term) => format!("{value} ({})", visible(term)),

@@ -2,7 +2,7 @@
 
 use std::{io::Write, path::PathBuf};
 
-use flagred_authoring::layout::{Unformatted, formatted};
+use flagred_authoring::layout::{LayoutError, formatted};
 use fuzzy::drawing::visible;
 
 use crate::{
@@ -35,13 +35,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 .help(format!("`flagred import {file}` converts it to YAML")));
         }
         let formatted = formatted(&text).map_err(|why| match why {
-            Unformatted::NotYaml(findings) => refuse(&findings, &file, &text),
-            Unformatted::Foreign => {
+            LayoutError::NotYaml(findings) => refuse(&findings, &file, &text),
+            LayoutError::Foreign => {
                 let message = format!("`{file}` is neither a rule set nor a profile");
                 Failure::unreadable(message)
                     .help("a rule set begins with `fuzzy: 1`, a profile with `flagred: 1`")
             }
-            Unformatted::Other(why) => {
+            LayoutError::Other(why) => {
                 Failure::unreadable(format!("`{file}` cannot be formatted: {why}"))
                     .help("`flagred check` shows its errors")
             }

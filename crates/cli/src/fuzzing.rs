@@ -132,7 +132,7 @@ pub struct Watch<'e> {
     out: SessionOutput,
     words: Words,
     screen: Screen,
-    told: WatchOutput,
+    reported: WatchOutput,
 }
 
 /// Output of a watch since the previous call.
@@ -167,7 +167,7 @@ impl<'e> Watch<'e> {
             out: SessionOutput::default(),
             words: Words::default(),
             screen: Screen::new("fuzzing".to_owned()),
-            told: WatchOutput::default(),
+            reported: WatchOutput::default(),
         }
     }
 
@@ -197,8 +197,8 @@ impl<'e> Watch<'e> {
     }
 
     /// Returns the output since the previous call.
-    pub fn told(&mut self) -> WatchOutput {
-        std::mem::take(&mut self.told)
+    pub fn reported(&mut self) -> WatchOutput {
+        std::mem::take(&mut self.reported)
     }
 
     /// Returns the text of the screen.
@@ -220,12 +220,12 @@ impl<'e> Watch<'e> {
         for event in self.out.events.drain(..) {
             let (session, estimator) = (&self.session, self.estimator);
             let words = self.words.line(now_s, &event, session, estimator);
-            self.told.words.extend(words);
+            self.reported.words.extend(words);
             let line = jsonl::line(now_s, &event, session, estimator);
             let json = line.and_then(|line| jsonl::text(&line).ok());
-            self.told.json.extend(json);
+            self.reported.json.extend(json);
             self.screen.add(now_s, &event, session, estimator);
         }
-        self.told.packets.append(&mut self.out.packets);
+        self.reported.packets.append(&mut self.out.packets);
     }
 }

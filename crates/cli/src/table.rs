@@ -29,7 +29,7 @@ use crate::{
 /// Maximum number of bytes of a row, including the comments above it.
 const LONGEST_ROW: usize = 1_000_000;
 /// Maximum number of cells of a table that is read as a whole.
-const MOST_CELLS: usize = 20_000_000;
+const MAX_CELLS: usize = 20_000_000;
 
 /// A source with a limit on the length of each row, since a single row could exhaust memory.
 struct BoundedReader {
@@ -272,8 +272,8 @@ impl Table {
             .map_err(|error| broken(file, &error))?
         {
             cells += record.len();
-            if cells > MOST_CELLS {
-                let message = format!("`{file}` has more than {MOST_CELLS} cells");
+            if cells > MAX_CELLS {
+                let message = format!("`{file}` has more than {MAX_CELLS} cells");
                 return Err(Failure::unreadable(message).help("use fewer rows or columns"));
             }
             let line = record.position().map_or(0, csv::Position::line);

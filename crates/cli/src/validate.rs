@@ -94,10 +94,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 }
 
 /// The built-in profiles that read only the motors, and the requested ones.
-fn estimators(asked: &[String]) -> Result<Estimators, Failure> {
+fn estimators(requested: &[String]) -> Result<Estimators, Failure> {
     let mut estimators = Estimators::default();
     let shipped = shipped::motor_profile_names().map(str::to_owned);
-    for wanted in shipped.chain(asked.iter().cloned()) {
+    for wanted in shipped.chain(requested.iter().cloned()) {
         if !estimators.has(&wanted) {
             estimators.add(&wanted, profile::load(&wanted)?.estimator);
         }

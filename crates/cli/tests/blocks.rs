@@ -42,11 +42,11 @@ fn eval_keeps_the_previous_value_from_row_to_row() {
 fn explain_and_map_report_a_missing_previous_row() {
     let folder = folder(&[("fan.yaml", FAN)]);
     let (_, text, _) = flagred(folder.path(), &["explain", "fan.yaml", "heat=22"]);
-    for told in [
+    for reported in [
         "\nspeed keeps its previous value, and a single point has none: no rule fired\n",
         "\nlamp keeps its previous value, or 4 if there is none: no rule fired\n",
     ] {
-        assert!(text.contains(told), "{text}");
+        assert!(text.contains(reported), "{text}");
     }
     let (code, _, errors) = flagred(folder.path(), &["map", "fan.yaml", "--of", "speed"]);
     assert_eq!(code, Some(0), "{errors}");
@@ -99,8 +99,8 @@ fn a_risk_does_not_keep_its_previous_value() {
     std::fs::write(path, keeping).unwrap();
     let (code, found, errors) = flagred(folder.path(), &["check", "profile.yaml"]);
     assert_eq!(code, Some(1), "{errors}");
-    let told = "error[keeps-previous]: output `risk` keeps its previous value where no rule fires, which is not allowed for a risk";
-    assert!(found.contains(told), "{found}");
+    let reported = "error[keeps-previous]: output `risk` keeps its previous value where no rule fires, which is not allowed for a risk";
+    assert!(found.contains(reported), "{found}");
 }
 
 #[test]

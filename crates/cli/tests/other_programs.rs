@@ -71,11 +71,12 @@ fn features_that_a_format_lacks_are_refused_or_reported() {
     let refused = flagred(&["export", "--fis", "tests/onboard/blocks.yaml"]);
     assert_eq!(refused.status.code(), Some(3));
     assert!(refused.stdout.is_empty());
-    let told = text(&refused.stderr);
+    let reported = text(&refused.stderr);
     // `--lossy` is advised only where it works.
     assert!(
-        told.contains("error[blocks]: the rules are in blocks") && !told.contains("`--lossy`"),
-        "{told}"
+        reported.contains("error[blocks]: the rules are in blocks")
+            && !reported.contains("`--lossy`"),
+        "{reported}"
     );
     let refused = flagred(&["export", "--fcl", "tests/onboard/blocks.yaml"]);
     assert!(text(&refused.stderr).contains("\n  help: `--lossy`"));
@@ -107,18 +108,18 @@ fn one_of_several_function_blocks_is_imported_by_its_name() {
     std::fs::write(&file, one + &other).unwrap();
     let file = file.to_str().unwrap();
     let refused = flagred(&["check", file]);
-    let told = text(&refused.stdout);
-    assert_eq!(refused.status.code(), Some(1), "{told}");
+    let reported = text(&refused.stdout);
+    assert_eq!(refused.status.code(), Some(1), "{reported}");
     assert!(
-        told.contains("the file has the function blocks `tipper`, `other`")
-            && told.contains("help: `flagred import --block NAME` writes one"),
-        "{told}"
+        reported.contains("the file has the function blocks `tipper`, `other`")
+            && reported.contains("help: `flagred import --block NAME` writes one"),
+        "{reported}"
     );
     let imported = flagred(&["import", file, "--block", "other"]);
-    let told = text(&imported.stdout);
+    let reported = text(&imported.stdout);
     assert!(
-        told.contains("\nname: other\n") && told.ends_with("generous\n"),
-        "{told}"
+        reported.contains("\nname: other\n") && reported.ends_with("generous\n"),
+        "{reported}"
     );
     let fis = tipper(&folder, "fis");
     let refused = flagred(&["import", fis.to_str().unwrap(), "--block", "other"]);

@@ -536,13 +536,13 @@ fn commands_that_change_files_explain_how_to_copy_built_in_ones() {
         &["studio", "flagred"],
     ] {
         let (output, _) = flagred(arguments, "");
-        let told = errors(&output);
-        assert_eq!(output.status.code(), Some(3), "{told}");
+        let reported = errors(&output);
+        assert_eq!(output.status.code(), Some(3), "{reported}");
         assert!(
-            told.contains(
+            reported.contains(
                 "`flagred new NAME --from flagred` writes a copy of the rule set to edit"
             ),
-            "{told}"
+            "{reported}"
         );
     }
 }
@@ -568,8 +568,11 @@ fn fmt_refuses_files_of_other_programs() {
                 (Some(3), ""),
                 "{text}"
             );
-            let told = errors(&output);
-            assert!(told.contains(said) && !told.contains("\\u{a}"), "{told}");
+            let reported = errors(&output);
+            assert!(
+                reported.contains(said) && !reported.contains("\\u{a}"),
+                "{reported}"
+            );
         }
         assert_eq!(fs::read_to_string(&path).unwrap(), text);
     }
@@ -582,10 +585,10 @@ fn a_target_is_not_an_input() {
     ];
     let (output, _) = flagred(&arguments, "x,y\n1,2\n2,3\n");
     assert_eq!(output.status.code(), Some(2));
-    let told = errors(&output);
+    let reported = errors(&output);
     assert!(
-        told.contains("`x` is both the target and an input"),
-        "{told}"
+        reported.contains("`x` is both the target and an input"),
+        "{reported}"
     );
-    assert!(!told.contains("\\u{a}"), "{told}");
+    assert!(!reported.contains("\\u{a}"), "{reported}");
 }

@@ -150,7 +150,7 @@ fn rows_without_information_or_with_overflow_are_refused() {
     let weightless = rows().replace(",1,", ",0,");
     let extreme = "heat,speed,w\n10,2,1\n30,1e308,1\n";
     let heavy = "heat,speed,w\n10,2,1e308\n30,8,1\n";
-    for (rows, more, told) in [
+    for (rows, more, reported) in [
         (
             &*weightless,
             &["--weight", "is_loud"][..],
@@ -170,7 +170,7 @@ fn rows_without_information_or_with_overflow_are_refused() {
         let files = [("rows.csv", rows), ("out.yaml", "good")];
         let (code, _, err, written) = tune(&files, &[more, &["--force"]].concat());
         assert_eq!((code, written.as_deref()), (Some(3), Some("good")), "{err}");
-        assert!(err.contains(told), "{err}");
+        assert!(err.contains(reported), "{err}");
     }
     // Some rows with weight 0 are allowed.
     let (code, _, err, written) = tune(&[], &["--weight", "is_loud", "--folds", "30"]);

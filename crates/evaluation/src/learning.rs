@@ -161,7 +161,7 @@ impl Predictor {
 const FOLDS: u32 = 10;
 
 /// The largest number of groups that are left out one at a time.
-const MOST_GROUPS: usize = 50;
+const MAX_GROUPS: usize = 50;
 
 /// Cross-validation: for each fold in turn, learns from all other rows and predicts the fold.
 ///
@@ -237,7 +237,7 @@ fn parts(rows: &[Row]) -> Vec<u32> {
     groups.dedup();
     rows.iter()
         .map(|row| match row.group {
-            Some(group) if groups.len() <= MOST_GROUPS => group,
+            Some(group) if groups.len() <= MAX_GROUPS => group,
             // The rank of the group selects the fold: with the number itself, groups with the same last digit would
             // share a fold.
             Some(group) => groups.partition_point(|other| *other < group) as u32 % FOLDS,

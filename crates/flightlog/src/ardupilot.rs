@@ -89,10 +89,10 @@ const SERVO_OF_TRI: u16 = 7;
 
 /// The maximum number of changes of the armed state, and of the in-air state, that are kept if they are derived from
 /// the commands.
-const MOST_CHANGES: usize = 10_000;
+const MAX_CHANGES: usize = 10_000;
 
 /// Armed and in-air times derived from the commands, for logs without events: armed while any motor runs, in the air
-/// while the mean command is above 0.2. Changes beyond [`MOST_CHANGES`] are counted in `left_out`.
+/// while the mean command is above 0.2. Changes beyond [`MAX_CHANGES`] are counted in `left_out`.
 pub(crate) fn air_from_commands(
     flight: &Flight,
     left_out: &mut u64,
@@ -116,7 +116,7 @@ pub(crate) fn air_from_commands(
             if last.replace(state) == Some(state) {
                 continue;
             }
-            if changes.len() < MOST_CHANGES {
+            if changes.len() < MAX_CHANGES {
                 changes.push((t_s, state));
             } else {
                 end_s.get_or_insert(t_s);

@@ -15,7 +15,7 @@ const LONGEST_PAUSE_S: f64 = 7.0 * 86_400.0;
 const LATEST_S: f64 = 5e9;
 
 /// The maximum number of boots of a log that are recorded.
-const MOST_BOOTS: usize = 1000;
+const MAX_BOOTS: usize = 1000;
 
 /// The treatment of a message, by its timestamp.
 #[derive(Debug, PartialEq)]
@@ -142,7 +142,7 @@ impl Clock {
 
     /// Whether the maximum number of boots was exceeded.
     pub(crate) fn is_full(&self) -> bool {
-        self.boots_s.len() >= MOST_BOOTS
+        self.boots_s.len() >= MAX_BOOTS
     }
 
     fn boot(&mut self, last_s: f64) {
@@ -253,11 +253,11 @@ mod tests {
     #[test]
     fn late_times_are_accepted_and_times_far_ahead_are_not() {
         let mut latest = Latest::new(60.0);
-        let told: Vec<bool> = [100.0, 3.0, 1e6, 101.0, 5e6, 5.00001e6, 102.0]
+        let reported: Vec<bool> = [100.0, 3.0, 1e6, 101.0, 5e6, 5.00001e6, 102.0]
             .into_iter()
             .map(|t_s| latest.believe(t_s))
             .collect();
-        assert_eq!(told, [true, true, false, true, false, true, true]);
+        assert_eq!(reported, [true, true, false, true, false, true, true]);
     }
 
     #[test]

@@ -7,7 +7,7 @@ use crate::{Flight, Format, VehicleKind};
 const SLOWEST_HZ: f64 = 5.0;
 
 /// The minimum number of motors of a multirotor: a tricopter has three.
-const LEAST_MOTORS: usize = 3;
+const MIN_MOTORS: usize = 3;
 
 /// Whether motor outputs are logged, as RCOU or, before ArduCopter 3.2, as MOT.
 fn logs_motors(log_bitmask: u32) -> bool {
@@ -50,7 +50,7 @@ pub enum Gap {
         expected: usize,
     },
     /// Fewer motors are known than the smallest multirotor has.
-    #[error("the log has {found} motor{}, but a multirotor has at least {LEAST_MOTORS}", if *found == 1 { "" } else { "s" })]
+    #[error("the log has {found} motor{}, but a multirotor has at least {MIN_MOTORS}", if *found == 1 { "" } else { "s" })]
     TooFewMotors {
         /// The number of motors whose outputs are known.
         found: usize,
@@ -243,7 +243,7 @@ impl Flight {
         let found = self.motors.len();
         if let Some(expected) = expected.filter(|&expected| expected > found && found > 0) {
             gaps.push(Gap::MotorsMissing { found, expected });
-        } else if (1..LEAST_MOTORS).contains(&found) {
+        } else if (1..MIN_MOTORS).contains(&found) {
             gaps.push(Gap::TooFewMotors { found });
         }
         if self.range.is_none() && !self.motors.is_empty() {

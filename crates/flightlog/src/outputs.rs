@@ -37,9 +37,9 @@ impl Bounds {
 }
 
 /// The number of outputs that may be motors if nothing else names them.
-const MOST_LIKE: usize = 8;
+const MAX_LIKE: usize = 8;
 /// The minimum standard deviation of an output that may be a motor, in us.
-const LEAST_MOVE_US: f64 = 20.0;
+const MIN_MOVE_US: f64 = 20.0;
 /// The minimum correlation of an output that may be a motor with the mean of the first four outputs.
 const TOGETHER: f64 = 0.6;
 
@@ -114,7 +114,7 @@ impl Outputs {
     /// Estimates the number of motors, for logs in which nothing else determines it: the largest of 8, 6 and 4 for
     /// which that many of the first outputs move together; `None` if the first 4 do not.
     pub(crate) fn like_motors(&self) -> Option<u16> {
-        let row = |row: usize| -> [f64; MOST_LIKE] {
+        let row = |row: usize| -> [f64; MAX_LIKE] {
             std::array::from_fn(|output| {
                 let column = self.columns.get(output);
                 match column.and_then(|column| column.get(row)) {
@@ -124,8 +124,8 @@ impl Outputs {
             })
         };
         let count = self.t_s.len();
-        let first = |row: &[f64; MOST_LIKE]| row[..4].iter().sum::<f64>() / 4.0;
-        let mean = |value: &dyn Fn(&[f64; MOST_LIKE]) -> f64| {
+        let first = |row: &[f64; MAX_LIKE]| row[..4].iter().sum::<f64>() / 4.0;
+        let mean = |value: &dyn Fn(&[f64; MAX_LIKE]) -> f64| {
             (0..count).map(|i| value(&row(i))).sum::<f64>() / count as f64
         };
         let first_mean = mean(&first);
@@ -134,12 +134,10 @@ impl Outputs {
             let variance = mean(&|row| (row[output] - own_mean).powi(2));
             let first_variance = mean(&|row| (first(row) - first_mean).powi(2));
             let covariance = mean(&|row| (row[output] - own_mean) * (first(row) - first_mean));
-            variance.sqrt() > LEAST_MOVE_US
+            variance.sqrt() > MIN_MOVE_US
                 && covariance > TOGETHER * (variance * first_variance).sqrt()
         };
-        let alike = (0..MOST_LIKE)
-            .take_while(|&output| is_motor(output))
-            .count();
+        let alike = (0..MAX_LIKE).take_while(|&output| is_motor(output)).count();
         match alike {
             8 => Some(8),
             6 | 7 => Some(6),

@@ -73,7 +73,9 @@ pub(crate) fn count_rotors(vehicle: &mut Vehicle, parameters: &Parameters) {
     let Some(count) = rotor_count(parameters) else {
         return;
     };
-    if vehicle.kind == VehicleKind::Multirotor && vehicle.motors.is_some_and(|told| told != count) {
+    if vehicle.kind == VehicleKind::Multirotor
+        && vehicle.motors.is_some_and(|reported| reported != count)
+    {
         vehicle.motors = Some(count);
         vehicle.frame = Some(format!("multirotor with {count} rotors"));
     }

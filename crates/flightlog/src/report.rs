@@ -76,14 +76,14 @@ impl fmt::Display for LeftOutCounts {
 }
 
 /// The maximum number of texts that are kept.
-const MOST_TEXTS: usize = 10_000;
+const MAX_TEXTS: usize = 10_000;
 /// The maximum number of flight mode changes that are kept.
-const MOST_MODES: usize = 10_000;
+const MAX_MODES: usize = 10_000;
 /// The maximum number of values that are kept in all rows, including their times: about three hours of commands and
 /// attitude at 400 Hz.
-const MOST_NUMBERS: u64 = 1 << 26;
+const MAX_NUMBERS: u64 = 1 << 26;
 /// The maximum number of changes of the armed or in-air state that are kept.
-const MOST_CHANGES: u64 = 10_000;
+const MAX_CHANGES: u64 = 10_000;
 
 /// The amounts of data that are kept so far. All rows and all changes count together.
 #[derive(Debug, Clone, Default)]
@@ -142,19 +142,19 @@ impl Report {
     /// current message counts as left out.
     pub(crate) fn leaves_out(&mut self, of_boots: bool) -> bool {
         let StoredCounts { numbers, changes } = self.stored;
-        let is_full = of_boots || numbers >= MOST_NUMBERS || changes >= MOST_CHANGES;
+        let is_full = of_boots || numbers >= MAX_NUMBERS || changes >= MAX_CHANGES;
         self.left_out.messages += u64::from(is_full);
         is_full
     }
 
     /// Keeps a text unless there are too many; then it is only counted.
     pub(crate) fn text<T>(&mut self, texts: &mut Vec<T>, text: T) {
-        keep(texts, text, MOST_TEXTS, &mut self.left_out.texts);
+        keep(texts, text, MAX_TEXTS, &mut self.left_out.texts);
     }
 
     /// Keeps a flight mode unless there are too many; then it is only counted.
     pub(crate) fn mode<T>(&mut self, modes: &mut Vec<T>, mode: T) {
-        keep(modes, mode, MOST_MODES, &mut self.left_out.modes);
+        keep(modes, mode, MAX_MODES, &mut self.left_out.modes);
     }
 
     pub(crate) fn because(&mut self, reason: impl FnOnce() -> String) {

@@ -198,7 +198,7 @@ impl Order {
 /// restarted.
 pub(crate) const SET_BACK_S: f64 = 0.2;
 /// The maximum number of entries in [`BackstepDetector::at_s`].
-const MOST_SET_BACK: usize = 1000;
+const MAX_SET_BACK: usize = 1000;
 
 /// Detects a clock that is set back. The kept rows do not show it, because the dropped rows leave no gap in their
 /// times.
@@ -220,7 +220,7 @@ impl BackstepDetector {
         let last_s = last_s.filter(|last_s| **last_s - t_s > SET_BACK_S);
         if let (Some(_), Some(last_s)) = (before_s, last_s)
             && self.at_s.last() != Some(last_s)
-            && self.at_s.len() < MOST_SET_BACK
+            && self.at_s.len() < MAX_SET_BACK
         {
             self.at_s.push(*last_s);
         }

@@ -16,11 +16,11 @@ use crate::{
 };
 
 /// The maximum number of inputs, and of outputs, of a rule set.
-pub(crate) const MOST_VARIABLES: usize = 1000;
+pub(crate) const MAX_VARIABLES: usize = 1000;
 /// The maximum number of terms of a variable.
-pub(crate) const MOST_TERMS: usize = 1000;
+pub(crate) const MAX_TERMS: usize = 1000;
 /// The maximum number of rule blocks of a rule set.
-pub(crate) const MOST_BLOCKS: usize = 1000;
+pub(crate) const MAX_BLOCKS: usize = 1000;
 
 /// A model that is being read from a text.
 pub(crate) struct ModelDraft<'t> {
@@ -164,8 +164,8 @@ impl<'t> ModelDraft<'t> {
     /// Whether one more than `count` items are allowed; otherwise an error is reported, once. Every item is compared
     /// with the earlier ones, so the time grows with the square of their number.
     pub(crate) fn has_room(&mut self, count: usize, most: usize, what: &str, part: &str) -> bool {
-        let is_told = |finding: &Diagnostic| finding.code == "too-large";
-        if count >= most && !self.findings.last().is_some_and(is_told) {
+        let is_reported = |finding: &Diagnostic| finding.code == "too-large";
+        if count >= most && !self.findings.last().is_some_and(is_reported) {
             let message = format!("there are more than {most} {what}");
             self.error(
                 "too-large",
@@ -180,7 +180,7 @@ impl<'t> ModelDraft<'t> {
     /// Whether another term may be added to a variable; otherwise an error is reported, once.
     pub(crate) fn has_room_for_term(&mut self, variable: &Variable, part: &str) -> bool {
         let what = format!("terms of `{}`", variable.name);
-        self.has_room(variable.terms.len(), MOST_TERMS, &what, part)
+        self.has_room(variable.terms.len(), MAX_TERMS, &what, part)
     }
 
     /// Whether an error makes the text unreadable.

@@ -8,7 +8,7 @@ use fuzzy::{
 use crate::{conditions, model_draft::ModelDraft};
 
 /// The maximum number of hedges of a conclusion, including those of the conclusions before it.
-const MOST_HEDGES: usize = 64;
+const MAX_HEDGES: usize = 64;
 
 /// Reads a rule from words and brackets, which are parts of the text of `draft`; `None` with a finding if it is
 /// invalid.
@@ -111,8 +111,8 @@ impl<'r> Reader<'r, '_, '_> {
             };
             // fuzzylite passes a hedged strength on to the following conclusions.
             hedges.splice(0..0, own);
-            if hedges.len() > MOST_HEDGES {
-                return self.unexpected(&format!("at most {MOST_HEDGES} hedges"));
+            if hedges.len() > MAX_HEDGES {
+                return self.unexpected(&format!("at most {MAX_HEDGES} hedges"));
             }
             consequents.push(Consequent {
                 output,

@@ -4,7 +4,7 @@ use std::fmt::Debug;
 
 use fuzzy::{
     Diagnostic, Findings, Model,
-    model::{LEAST_STRENGTH, Operators, Term, Variable},
+    model::{MIN_STRENGTH, Operators, Term, Variable},
 };
 
 use crate::{
@@ -28,7 +28,7 @@ impl TextDraft {
             losses,
             findings: vec![],
         };
-        if model.least_strength != LEAST_STRENGTH {
+        if model.least_strength != MIN_STRENGTH {
             let message = format!(
                 "rules below the strength {} do not fire",
                 model.least_strength
@@ -129,13 +129,13 @@ impl TextDraft {
 
     pub(crate) fn finish(self) -> Result<WriteResult, Findings> {
         // A finding about several outputs is reported once.
-        let mut told: Vec<Diagnostic> = vec![];
+        let mut reported: Vec<Diagnostic> = vec![];
         for finding in self.findings {
-            if !told.contains(&finding) {
-                told.push(finding);
+            if !reported.contains(&finding) {
+                reported.push(finding);
             }
         }
-        let findings = Findings(told);
+        let findings = Findings(reported);
         match findings.has_errors() {
             true => Err(findings),
             false => Ok(WriteResult {

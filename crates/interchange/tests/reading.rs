@@ -142,9 +142,12 @@ fn nested_brackets_are_bounded_and_use_little_stack() {
                 match read {
                     Ok(_) => assert!(is_read, "{deep}"),
                     Err(findings) => {
-                        let told = findings.to_string();
-                        assert!(!is_read, "{told}");
-                        assert!(told.contains("rule-too-deep") && told.len() < 500, "{told}");
+                        let reported = findings.to_string();
+                        assert!(!is_read, "{reported}");
+                        assert!(
+                            reported.contains("rule-too-deep") && reported.len() < 500,
+                            "{reported}"
+                        );
                     }
                 }
             }
@@ -178,8 +181,8 @@ fn long_words_are_cut_in_messages() {
         ),
     ];
     for text in texts {
-        let told = flagred_interchange::document(&text).unwrap_err();
-        for finding in &told.0 {
+        let reported = flagred_interchange::document(&text).unwrap_err();
+        for finding in &reported.0 {
             let shown = finding.to_string();
             assert!(shown.len() < 700, "{} {}", shown.len(), &shown[..300]);
         }
@@ -271,7 +274,7 @@ fn mistakes_are_reported_with_their_position() {
         (Format::Fml, "</fuzzySystem>", ""),
         (Format::Fml, "mamdaniRuleBase", "anYaRuleBase"),
     ];
-    let mut told = String::new();
+    let mut reported = String::new();
     for (format, before, after) in mistakes {
         let (_, text) = TEXTS.iter().find(|(known, _)| *known == format).unwrap();
         assert!(text.contains(before), "{before}");
@@ -281,9 +284,9 @@ fn mistakes_are_reported_with_their_position() {
             Err(findings) => findings,
         };
         assert!(!findings.0.is_empty(), "{before} -> {after}");
-        told += &format!("{}: {before:?} -> {after:?}\n{findings}\n\n", format.name());
+        reported += &format!("{}: {before:?} -> {after:?}\n{findings}\n\n", format.name());
     }
-    insta::assert_snapshot!(told);
+    insta::assert_snapshot!(reported);
 }
 
 #[test]
@@ -314,8 +317,8 @@ fn rules_that_an_fcl_joins_are_a_loss_where_values_are_computed() {
     // The default is MAX, and NONE in fuzzylite's dialect, which has no `;` after a rule.
     for (accu, end) in [("ACCU : MAX;", ";"), ("", ";"), ("ACCU : BSUM;", "")] {
         let findings = read(accu, end).unwrap_err();
-        let told = findings.0.iter().any(|finding| finding.code == "joined");
-        assert!(told, "{accu}: {findings}");
+        let reported = findings.0.iter().any(|finding| finding.code == "joined");
+        assert!(reported, "{accu}: {findings}");
     }
     for (accu, end) in [("ACCU : SUM;", ";"), ("ACCU : NONE;", ";"), ("", "")] {
         let document = read(accu, end).unwrap_or_else(|findings| panic!("{accu}: {findings}"));

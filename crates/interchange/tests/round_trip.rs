@@ -145,8 +145,11 @@ fn steps_are_exported_as_rectangles_and_read_back_as_steps() {
     let model: Model = STEPS.parse().unwrap();
     for format in Format::ALL {
         let written = flagred_interchange::write(&model, format, Losses::Refuse).unwrap();
-        let told = written.findings.to_string();
-        assert!(told.contains("note[steps]: the steps of `dti`"), "{told}");
+        let reported = written.findings.to_string();
+        assert!(
+            reported.contains("note[steps]: the steps of `dti`"),
+            "{reported}"
+        );
         let again = flagred_interchange::read(&written.text, format, Losses::Refuse).unwrap();
         let limits = again
             .model
@@ -161,10 +164,10 @@ fn steps_are_exported_as_rectangles_and_read_back_as_steps() {
         let shared = written.text.replace("35.99999999999999", "36");
         let again = flagred_interchange::read(&shared, format, Losses::Refuse).unwrap();
         assert_eq!(again.model.inputs[0].step_limits(), None, "{shared}");
-        let told = again.warnings.to_string();
+        let reported = again.warnings.to_string();
         assert!(
-            told.contains("`fine` and `stretched` of `dti` both contain 36"),
-            "{told}"
+            reported.contains("`fine` and `stretched` of `dti` both contain 36"),
+            "{reported}"
         );
     }
 }
@@ -200,8 +203,8 @@ fn names_of_rule_sets_are_written_so_that_they_can_be_read() {
     for name in ["3d", "'my rules'", "var_input", "'1 + 1'", "größe"] {
         let model = with_output(name, NUMBERS);
         let written = flagred_interchange::write(&model, Format::Fcl, Losses::Refuse).unwrap();
-        let told = written.findings.to_string();
-        assert!(told.contains("renamed"), "{name}: {told}");
+        let reported = written.findings.to_string();
+        assert!(reported.contains("renamed"), "{name}: {reported}");
         let again = flagred_interchange::read(&written.text, Format::Fcl, Losses::Refuse)
             .unwrap_or_else(|findings| panic!("{findings}\n{}", written.text));
         same_values(&model, &again.model, name);

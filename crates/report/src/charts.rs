@@ -52,7 +52,7 @@ pub fn options(estimator: &Estimator, drawn: bool) -> Options {
 const PERCENT: (Scale, &str) = (Scale::new(0.0, 100.0), "%");
 
 /// The maximum number of events that are drawn; the last one shows the number of further events.
-const MOST_EVENTS: usize = 200;
+const MAX_EVENTS: usize = 200;
 
 /// The stretch that is drawn: from the first take-off to the last landing, or the whole log if there is none.
 pub(crate) fn stretch(flight: &Flight) -> Stretch {
@@ -102,7 +102,7 @@ pub(crate) fn timeline(flight: &Flight, assessed: &Assessment, shown: Stretch) -
             kinds.push(&mode.what);
         }
         let span = span(stretch);
-        if is_some(span) && phases.len() == MOST_EVENTS {
+        if is_some(span) && phases.len() == MAX_EVENTS {
             more += 1;
         } else if is_some(span) {
             let kind = kinds.iter().position(|known| *known == mode.what);
@@ -136,9 +136,9 @@ pub(crate) fn timeline(flight: &Flight, assessed: &Assessment, shown: Stretch) -
         .filter(|(t_s, _)| stretch.contains(*t_s))
         .collect();
     events.sort_by(|a, b| a.0.total_cmp(&b.0));
-    if events.len() > MOST_EVENTS {
-        let more = format!("and {} more events", events.len() - MOST_EVENTS + 1);
-        events.truncate(MOST_EVENTS - 1);
+    if events.len() > MAX_EVENTS {
+        let more = format!("and {} more events", events.len() - MAX_EVENTS + 1);
+        events.truncate(MAX_EVENTS - 1);
         if let Some((t_s, _)) = events.last() {
             events.push((*t_s, more));
         }

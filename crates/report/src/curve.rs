@@ -29,7 +29,7 @@ const STEPS_S: [f64; 17] = [
     3600.0, 7200.0,
 ];
 /// The maximum number of ticks along the time axis, which must fit on a phone.
-const MOST_TICKS: f64 = 6.0;
+const MAX_TICKS: f64 = 6.0;
 
 impl Stretch {
     /// The length in seconds; at least a millisecond.
@@ -49,12 +49,12 @@ impl Stretch {
 
     /// The times of ticks with their labels: round minutes and seconds since `zero_s`; the last label includes the unit.
     pub(crate) fn ticks(&self, zero_s: f64) -> Vec<(f64, String)> {
-        let fits = |step: &&f64| self.length_s() / **step <= MOST_TICKS;
+        let fits = |step: &&f64| self.length_s() / **step <= MAX_TICKS;
         let step_s = STEPS_S.iter().find(fits).copied();
-        let step_s = step_s.unwrap_or(self.length_s() / MOST_TICKS);
+        let step_s = step_s.unwrap_or(self.length_s() / MAX_TICKS);
         let decimals = usize::from(step_s < 1.0);
         let first = ((self.start_s - zero_s) / step_s).ceil();
-        let times = (0..=MOST_TICKS as usize).map(|i| (first + i as f64) * step_s);
+        let times = (0..=MAX_TICKS as usize).map(|i| (first + i as f64) * step_s);
         let within = times.filter(|since_s| self.contains(zero_s + since_s));
         let label = |since_s: f64| (zero_s + since_s, minutes(since_s, decimals));
         let mut ticks: Vec<(f64, String)> = within.map(label).collect();

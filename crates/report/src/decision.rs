@@ -141,14 +141,14 @@ pub(super) fn map(estimator: &Estimator, model: &Model, steps: &[Step]) -> Optio
 
 /// The appearance of a cell: the twentieth of the risk's range that contains its risk, and whether the risk is interpolated.
 #[derive(Clone, Copy, PartialEq, Eq)]
-struct Look {
+struct CellAppearance {
     twentieth: u32,
     filled: bool,
 }
 
-impl Look {
+impl CellAppearance {
     fn of(estimate: Estimate) -> Self {
-        Look {
+        CellAppearance {
             twentieth: ((estimate.risk_pct / 5.0) as u32).min(19),
             filled: estimate.filled_from.is_some(),
         }
@@ -163,11 +163,11 @@ fn cells(estimator: &Estimator, slice: &Slice, x_scale: Scale, y_scale: Scale) -
         let [x, y] = slice.shown;
         *point.get_mut(x)? = middle(x_scale, i);
         *point.get_mut(y)? = middle(y_scale, j);
-        estimator.at(&point).map(Look::of)
+        estimator.at(&point).map(CellAppearance::of)
     };
     let mut drawing = String::new();
     runs(CELLS, CELLS, look, |column, row, length, look| {
-        let Some(Look { twentieth, filled }) = look else {
+        let Some(CellAppearance { twentieth, filled }) = look else {
             return;
         };
         // Slightly larger, so that there is no gap between neighbours.

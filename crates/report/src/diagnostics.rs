@@ -9,11 +9,11 @@ use fuzzy::{
 };
 
 /// The maximum number of bytes between two locations of one finding on the same line.
-const MOST_BETWEEN: usize = 1000;
+const MAX_BETWEEN: usize = 1000;
 
 /// The maximum number of findings that are displayed for a file, errors first; further findings are
 /// counted.
-const MOST_DRAWN: usize = 100;
+const MAX_DRAWN: usize = 100;
 
 /// Options for displaying findings.
 #[derive(Debug, Clone, Copy)]
@@ -49,9 +49,9 @@ pub fn draw(findings: &[Diagnostic], file: &str, text: &str, style: Style) -> St
     let (shown_file, shown_text) = (visible(file), visible_lines(text));
     let is_same = matches!(shown_text, Cow::Borrowed(_));
     let mut first: Vec<&Diagnostic> = findings.iter().collect();
-    if first.len() > MOST_DRAWN {
+    if first.len() > MAX_DRAWN {
         first.sort_by_key(|finding| Reverse(finding.severity));
-        first.truncate(MOST_DRAWN);
+        first.truncate(MAX_DRAWN);
         first.sort_by_key(|finding| finding.span.start);
     }
     let drawn = first.into_iter().map(|finding| {
@@ -62,8 +62,8 @@ pub fn draw(findings: &[Diagnostic], file: &str, text: &str, style: Style) -> St
     if !drawn.is_empty() {
         drawn.push('\n');
     }
-    if findings.len() > MOST_DRAWN {
-        let more = findings.len() - MOST_DRAWN;
+    if findings.len() > MAX_DRAWN {
+        let more = findings.len() - MAX_DRAWN;
         drawn += &format!("\nand {more} more findings; {}\n", style.all);
     }
     drawn
@@ -141,7 +141,7 @@ fn report<'a>(
 /// be displayed too.
 fn is_drawn_with(text: &str, first: &Range<usize>, second: &Range<usize>) -> bool {
     let (from, to) = (first.end.min(second.end), first.start.max(second.start));
-    to.saturating_sub(from) <= MOST_BETWEEN
+    to.saturating_sub(from) <= MAX_BETWEEN
         || text
             .get(from..to)
             .is_none_or(|between| between.contains('\n'))

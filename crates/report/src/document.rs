@@ -11,7 +11,7 @@ use flagred::{
 use flagred_flightlog::{Flight, Format, Motor, Parameter, Range, Report, VehicleKind};
 use serde::Serialize;
 
-use crate::finding::{Teller, numbered};
+use crate::finding::{FindingContext, numbered};
 
 /// The version of the document's layout; it increases when a name changes its meaning or is removed.
 const SCHEMA: &str = "flagred.assess/1";
@@ -113,7 +113,7 @@ pub struct FindingDocument<'a> {
 
 impl<'a> FindingDocument<'a> {
     /// Creates the document of a finding, with the words of `teller`.
-    pub fn new(finding: &'a Finding, teller: Teller<'a>) -> Self {
+    pub fn new(finding: &'a Finding, teller: FindingContext<'a>) -> Self {
         let Words {
             code, text, advice, ..
         } = teller.words(finding);
@@ -149,7 +149,7 @@ pub fn document<'a>(
 ) -> Document<'a> {
     let profile = estimator.profile();
     let findings = assessed.findings.iter();
-    let teller = Teller {
+    let teller = FindingContext {
         estimator,
         motors: &flight.motors,
     };

@@ -12,7 +12,7 @@ use crate::clock::Clock;
 
 /// The context for describing findings in words.
 #[derive(Clone, Copy)]
-pub struct Teller<'a> {
+pub struct FindingContext<'a> {
     /// The profile and its rule set.
     pub estimator: &'a Estimator,
     /// The motors of the flight.
@@ -84,7 +84,7 @@ impl Line<'_> {
     }
 }
 
-impl<'a> Teller<'a> {
+impl<'a> FindingContext<'a> {
     /// The words of a finding for the pilot.
     pub fn words(&self, finding: &Finding) -> Words {
         numbered(finding, self.motors).words(self.estimator)
@@ -165,7 +165,7 @@ pub(crate) fn highest_of<'f>(output: &str, findings: &'f [Finding]) -> Option<&'
 }
 
 /// The advice of a finding, and the positions of the motors that it names.
-pub(crate) fn advice(teller: Teller<'_>, finding: &Finding, flight: &Flight) -> String {
+pub(crate) fn advice(teller: FindingContext<'_>, finding: &Finding, flight: &Flight) -> String {
     let advice = teller.words(finding).advice;
     match positions(finding, flight) {
         Some(positions) => format!("{advice} {positions}"),

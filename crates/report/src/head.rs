@@ -13,7 +13,7 @@ use maud::{Markup, html};
 use crate::{
     charts,
     clock::Clock,
-    finding::{self, Teller},
+    finding::{self, FindingContext},
     subject::Subject,
     words,
 };
@@ -99,7 +99,7 @@ fn at(peak: Peak, clock: Clock) -> String {
 pub(crate) fn findings(subject: &Subject, loaded: &Loaded) -> Markup {
     let assessed = &subject.assessed;
     let clock = Clock::Since(subject.stretch().start_s);
-    let teller = Teller {
+    let teller = FindingContext {
         estimator: &loaded.estimator,
         motors: &subject.flight.motors,
     };

@@ -34,13 +34,13 @@ pub fn number_or_cell(text: &str) -> Cow<'_, str> {
 /// # Errors
 /// If writing to `out` fails.
 pub fn write_flight(out: impl Write, flight: &Flight) -> io::Result<()> {
-    flight.write_csv(Visible(out))
+    flight.write_csv(VisibleText(out))
 }
 
 /// Makes hidden characters in written text visible, except line ends.
-struct Visible<W>(W);
+struct VisibleText<W>(W);
 
-impl<W: Write> Write for Visible<W> {
+impl<W: Write> Write for VisibleText<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let is_plain = |byte: &u8| matches!(byte, b' '..=b'~' | b'\n');
         if bytes.iter().all(is_plain) {

@@ -15,7 +15,7 @@ use fuzzy::drawing::{number, visible};
 use crate::{
     clock::Clock,
     curve::over_time_text,
-    finding::{self, Teller},
+    finding::{self, FindingContext},
 };
 
 /// The number of columns of the picture of risk over time.
@@ -88,7 +88,7 @@ pub fn write(
         }
     }
     writeln!(out)?;
-    let teller = Teller {
+    let teller = FindingContext {
         estimator,
         motors: &flight.motors,
     };
@@ -152,7 +152,7 @@ pub fn write_line(
         let value = number(assumed.value, 6);
         parts.push(format!("`{}` assumed to be {value}", assumed.input));
     }
-    let teller = Teller {
+    let teller = FindingContext {
         estimator,
         motors: &flight.motors,
     };
@@ -222,11 +222,11 @@ pub fn effective_range(effective: &flagred_flightlog::Range) -> String {
 }
 
 /// The maximum number of spans of time that are listed on a line.
-const MOST_SPANS: usize = 12;
+const MAX_SPANS: usize = 12;
 
 /// The first spans, with the number of further spans.
 pub fn first_spans(mut spans: impl ExactSizeIterator<Item = String>) -> String {
-    let first: Vec<String> = spans.by_ref().take(MOST_SPANS).collect();
+    let first: Vec<String> = spans.by_ref().take(MAX_SPANS).collect();
     match spans.len() {
         0 => first.join(", "),
         more => format!("{} and {more} more", first.join(", ")),
@@ -270,7 +270,7 @@ pub fn notes(flight: &Flight, assessed: &Assessment) -> Vec<String> {
         notes.push(format!(
             "the steps are {} s apart, so that at most {} are kept",
             number(step_s, 6),
-            flagred::flight::MOST_STEPS
+            flagred::flight::MAX_STEPS
         ));
     }
     notes

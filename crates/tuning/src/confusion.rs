@@ -22,9 +22,9 @@ impl Confusion {
 }
 
 /// The maximum number of classes; an output with more values counts as a quantity.
-const MOST_CLASSES: usize = 10;
+const MAX_CLASSES: usize = 10;
 /// The minimum mean number of rows per class; with fewer, the output counts as a quantity.
-const LEAST_ROWS: usize = 5;
+const MIN_ROWS: usize = 5;
 
 /// Returns the confusion matrix if the truths are classes: 2 to 10 whole numbers with at least 5
 /// rows each on average. Rows without a prediction are left out.
@@ -32,13 +32,13 @@ pub(crate) fn confusion(predictions: &[f64], data: &Data) -> Option<Confusion> {
     let mut classes: Vec<f64> = Vec::new();
     for &truth in &data.truths {
         if let Err(place) = classes.binary_search_by(|class| class.total_cmp(&truth)) {
-            if classes.len() == MOST_CLASSES || truth.fract() != 0.0 {
+            if classes.len() == MAX_CLASSES || truth.fract() != 0.0 {
                 return None;
             }
             classes.insert(place, truth);
         }
     }
-    if classes.len() < 2 || data.len() < LEAST_ROWS * classes.len() {
+    if classes.len() < 2 || data.len() < MIN_ROWS * classes.len() {
         return None;
     }
     let nearest = |value: f64| {

@@ -144,7 +144,7 @@ fn within(
     products: &DVector<f64>,
     ridge: f64,
 ) -> DVector<f64> {
-    const MOST_SWEEPS: u32 = 1000;
+    const MAX_SWEEPS: u32 = 1000;
     let is_within = |(step, (low, high)): (&f64, &(f64, f64))| step >= low && step <= high;
     if steps.iter().zip(limits).all(is_within) {
         return steps;
@@ -153,7 +153,7 @@ fn within(
     for (step, (low, high)) in steps.iter_mut().zip(limits) {
         *step = step.clamp(*low, *high);
     }
-    for _ in 0..MOST_SWEEPS {
+    for _ in 0..MAX_SWEEPS {
         let mut largest = 0.0_f64;
         for (i, (low, high)) in limits.iter().enumerate() {
             let curvature = squares[(i, i)];

@@ -41,7 +41,7 @@ pub use numbers::{ChangedNumber, Number, moved_although_fixed, numbers, with_num
 pub use reliability::Bin;
 pub use settings::{Loss, Settings, TuneError};
 pub use simplify::{
-    Difference, EQUAL, MOST_RULES, SimplifyError, SimplifyResult, SimplifySettings, simplify,
+    Difference, EQUAL, MAX_RULES, SimplifyError, SimplifyResult, SimplifySettings, simplify,
 };
 pub use validation::{CurvePoint, Validation, cross_validate, learning_curve};
 
@@ -161,7 +161,7 @@ pub fn tune(
             }
         };
         let from: Vec<f64> = (0..parameters.free()).map(|_| jitter()).collect();
-        let told = &mut |iteration: u32, at: Option<&Point>| {
+        let reported = &mut |iteration: u32, at: Option<&Point>| {
             at.into_iter().for_each(|at| improve(&mut best, at));
             watch(&Progress {
                 start,
@@ -170,8 +170,13 @@ pub fn tune(
                 model: &best.1.model,
             })
         };
-        let (found, flow) =
-            search::search(&objective, &parameters, &from, settings.iterations, told)?;
+        let (found, flow) = search::search(
+            &objective,
+            &parameters,
+            &from,
+            settings.iterations,
+            reported,
+        )?;
         found.iter().for_each(|found| improve(&mut best, found));
         is_stopped = flow.is_break();
         if is_stopped {

@@ -30,7 +30,7 @@ pub(crate) fn slopes(loss: Loss, predictions: &[f64], truths: &[f64], data: &Dat
         let known = if is_known { *prediction } else { 0.5 };
         let (value, first, second) = match loss {
             Loss::Log => {
-                let least = Loss::LEAST_PROBABILITY;
+                let least = Loss::MIN_PROBABILITY;
                 let p = known.clamp(least, 1.0 - least);
                 let value = -(truth * p.ln() + (1.0 - truth) * (1.0 - p).ln());
                 (value, (p - truth) / (p * (1.0 - p)), 1.0 / (p * (1.0 - p)))

@@ -24,7 +24,7 @@ struct Segment {
 }
 
 /// The minimum initial share of a distance in a segment, so that it can grow.
-const LEAST_SHARE: f64 = 1e-3;
+const MIN_SHARE: f64 = 1e-3;
 
 /// The distance from the end of the range, as a share of the segment, below which a position is set
 /// to the end.
@@ -126,7 +126,7 @@ impl Segment {
         let spare: f64 = distances.iter().flatten().map(|(_, rest)| rest).sum();
         for (_, share) in distances.iter_mut().flatten() {
             *share = if spare > 0.0 {
-                (*share / spare).max(LEAST_SHARE)
+                (*share / spare).max(MIN_SHARE)
             } else {
                 1.0
             };

@@ -76,11 +76,11 @@ enum ParameterLink {
 
 /// The largest factor by which a width, a slope or a distance from an anchor grows or shrinks. It keeps terms
 /// readable: no width vanishes.
-pub(crate) const MOST_FACTOR: f64 = 5.0;
+pub(crate) const MAX_FACTOR: f64 = 5.0;
 
-/// The factor of a free number: about `exp(z)`, between 1 / [`MOST_FACTOR`] and [`MOST_FACTOR`].
+/// The factor of a free number: about `exp(z)`, between 1 / [`MAX_FACTOR`] and [`MAX_FACTOR`].
 fn factor(z: f64) -> f64 {
-    let most = MOST_FACTOR.ln();
+    let most = MAX_FACTOR.ln();
     (most * (z / most).tanh()).exp()
 }
 

@@ -18,7 +18,7 @@ const DIFFERENCE: f64 = 1e-4;
 const LONGEST: f64 = 2.0;
 
 /// A step with a smaller relative gain counts as poor.
-const LEAST_GAIN: f64 = 1e-7;
+const MIN_GAIN: f64 = 1e-7;
 
 /// The number of poor steps that end a search.
 const PATIENCE: u32 = 3;
@@ -62,7 +62,7 @@ pub(crate) fn search(
         holds = true;
         damping = (used / 4.0).max(1e-9);
         let gain = before - at.slopes.loss;
-        poor = if gain < LEAST_GAIN * before {
+        poor = if gain < MIN_GAIN * before {
             poor + 1
         } else {
             0
@@ -149,8 +149,8 @@ fn step(
     products: &DVector<f64>,
     mut damping: f64,
 ) -> Result<Option<(Vec<f64>, Point, f64)>, TuneError> {
-    const MOST_TRIES: u32 = 12;
-    for _ in 0..MOST_TRIES {
+    const MAX_TRIES: u32 = 12;
+    for _ in 0..MAX_TRIES {
         let Some(step) = solve(squares.clone(), products, damping) else {
             return Ok(None);
         };

@@ -10,7 +10,7 @@ pub enum Loss {
     #[default]
     Squared,
     /// The mean of `-ln p` for truth 1 and `-ln(1 - p)` for truth 0, where `p` is the position of the prediction in the
-    /// range of the output, from 0 to 1 and at least [`Loss::LEAST_PROBABILITY`] away from both ends. Truths are 0 and
+    /// range of the output, from 0 to 1 and at least [`Loss::MIN_PROBABILITY`] away from both ends. Truths are 0 and
     /// 1.
     Log,
     /// The share of pairs of a row with truth 1 and a row with truth 0 whose predictions are in the wrong order; equal
@@ -22,7 +22,7 @@ pub enum Loss {
 
 impl Loss {
     /// The minimum distance of a probability from 0 and 1; see [`Loss::Log`].
-    pub const LEAST_PROBABILITY: f64 = 1e-3;
+    pub const MIN_PROBABILITY: f64 = 1e-3;
 }
 
 /// Settings of [`tune`](crate::tune).

@@ -327,7 +327,7 @@ fn wrong_rows_are_errors() {
     assert_eq!(error(&one, Loss::Ranking), "all rows have the same outcome");
     one.weights.fill(0.0);
     assert_eq!(error(&one, Loss::Squared), "the weights of all rows are 0");
-    for (weight, told) in [
+    for (weight, reported) in [
         (-1.0, "the weight is -1.0"),
         (1e308, "the weight is 1e308"),
         (f64::NAN, "the weight is NaN"),
@@ -335,7 +335,7 @@ fn wrong_rows_are_errors() {
         one.weights.fill(weight);
         let error = error(&one, Loss::Squared);
         assert!(
-            error.starts_with("row 0: ") && error.contains(told),
+            error.starts_with("row 0: ") && error.contains(reported),
             "{error}"
         );
     }

@@ -148,8 +148,8 @@ fn left_out(
         if known.is_empty() || left_out.is_empty() {
             continue;
         }
-        let mut told = |progress: &Progress<'_>| watch(fold as u32, progress);
-        let tuned = match tune(model, &known, settings, &mut told) {
+        let mut reported = |progress: &Progress<'_>| watch(fold as u32, progress);
+        let tuned = match tune(model, &known, settings, &mut reported) {
             // A few rows may all have the same truth; the model is then not tuned.
             Err(TuneError::OneClass) if eighths < EIGHTHS => model.clone(),
             tuned => {

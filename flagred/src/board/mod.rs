@@ -181,9 +181,9 @@ impl Plan<'_> {
         )?;
         require(is_above_0(self.settings.elevated_risk.window_s), "settings")?;
         require(
-            self.propositions
-                .iter()
-                .all(|said| (said.input as usize) < inputs.saturating_add(self.read_outputs())),
+            self.propositions.iter().all(|antecedent| {
+                (antecedent.input as usize) < inputs.saturating_add(self.read_outputs())
+            }),
             "propositions",
         )?;
         require(
@@ -252,17 +252,19 @@ impl Plan<'_> {
         let table = &self.rules.table;
         let outputs = table.outputs.len();
         let Some(chain) = self.rules.chain() else {
-            return propositions.cause(inputs, risk, outputs, |output, asked, pick| match asked {
-                RuleQuery::Raises(value) => {
-                    let rule = table.raised_by(scratch, point, output, value)?;
-                    pick(rule, scratch.degrees)
+            return propositions.cause(inputs, risk, outputs, |output, requested, pick| {
+                match requested {
+                    RuleQuery::Raises(value) => {
+                        let rule = table.raised_by(scratch, point, output, value)?;
+                        pick(rule, scratch.degrees)
+                    }
+                    RuleQuery::Concludes(_) => None,
                 }
-                RuleQuery::Concludes(_) => None,
             });
         };
-        let is_read = |said: &&Proposition| said.input as usize >= inputs.len();
-        let cause = propositions.cause(inputs, risk, outputs, |output, asked, pick| {
-            let sought = match asked {
+        let is_read = |antecedent: &&Proposition| antecedent.input as usize >= inputs.len();
+        let cause = propositions.cause(inputs, risk, outputs, |output, requested, pick| {
+            let sought = match requested {
                 RuleQuery::Raises(value) => StageRuleCriterion::Raises(value),
                 RuleQuery::Concludes(proposition) => {
                     let before = self.propositions.get(..proposition)?;
@@ -412,9 +414,11 @@ impl<'a> Monitor<'a> {
     /// The cause of the risk for given values of the inputs, in the order of the profile, independent of the flight.
     /// `None` if no rule raises the risk.
     pub fn cause_at(&mut self, inputs: &[f64]) -> Option<Cause> {
-        let said = self.at(inputs).filter(|said| said.filled_from.is_none())?;
+        let antecedent = self
+            .at(inputs)
+            .filter(|antecedent| antecedent.filled_from.is_none())?;
         self.plan
-            .cause(inputs, said.risk_pct, self.point, &mut self.rules)
+            .cause(inputs, antecedent.risk_pct, self.point, &mut self.rules)
     }
 
     /// The values of the inputs after the last sample, in the order of the profile; NaN is unknown.

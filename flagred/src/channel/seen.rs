@@ -5,7 +5,7 @@ use crate::{
     exponential::Exponential,
     margin::margin,
     moments::Moments,
-    motor::{BIN_S, Motor, Together},
+    motor::{BIN_S, Motor, MotorTotals},
     window::Window,
 };
 
@@ -25,7 +25,7 @@ pub struct ChannelState {
     bin: Bin,
     /// Whether all signals were known at the same time at least once, on the ground or in the air, in this flight or
     /// before.
-    has_come: bool,
+    has_arrived: bool,
 }
 
 /// The values of the latest bin.
@@ -78,14 +78,14 @@ impl ChannelState {
         exponential: Exponential::IDLE,
         last: None,
         bin: Bin::IDLE,
-        has_come: false,
+        has_arrived: false,
     };
 
     /// Resets to no observations, over a window of `window_s` seconds, in place.
     fn restart(&mut self, window_s: f64) {
         self.window.restart(window_s);
         self.exponential = Exponential::new(window_s);
-        self.has_come = false;
+        self.has_arrived = false;
         self.clear_latest();
     }
 
@@ -140,7 +140,7 @@ pub(crate) fn restart(channels: &[Channel], seen: &mut [ChannelState]) {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Now<'a> {
     pub(crate) motors: &'a [Motor],
-    pub(crate) together: Together,
+    pub(crate) together: MotorTotals,
     /// The signals of the sample; NaN is unknown.
     pub(crate) named: &'a [f64],
 }
@@ -163,7 +163,7 @@ pub(crate) fn note(
         let place = input.channel;
         if let (Some(channel), Some(seen)) = (channels.get(place), seen.get_mut(place)) {
             let is_known = |signal: usize| named.get(signal).is_some_and(|value| value.is_finite());
-            seen.has_come |= channel.observed.signals().all(is_known);
+            seen.has_arrived |= channel.observed.signals().all(is_known);
         }
     }
 }
@@ -176,7 +176,7 @@ pub(crate) fn assumed(inputs: &[Input], seen: &[ChannelState], input: usize) -> 
         if_missing,
         ..
     } = *inputs.get(input)?;
-    if_missing.filter(|_| seen.get(channel).is_some_and(|seen| !seen.has_come))
+    if_missing.filter(|_| seen.get(channel).is_some_and(|seen| !seen.has_arrived))
 }
 
 /// Adds a sample at `t_s`, which applies to the `held_s` seconds before, to all channels.

@@ -11,7 +11,7 @@ use fuzzy::{
     model::{MembershipFunction, Role, Variable},
 };
 
-use super::{Places, is_above, shown};
+use super::{ValuePositions, is_above, shown};
 use crate::{
     estimator::{Estimator, Memory},
     profile::{Profile, ProfileInput},
@@ -19,7 +19,7 @@ use crate::{
 };
 
 /// The budget of a search, in evaluated rules and terms: some tens of milliseconds.
-const MOST_STEPS: usize = 3_000_000;
+const MAX_STEPS: usize = 3_000_000;
 /// The number of even steps across an input's range that are tried, in addition to the points of its terms.
 const STEPS: u32 = 32;
 
@@ -28,7 +28,7 @@ const STEPS: u32 = 32;
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
-pub struct Alone {
+pub struct OutvotedInput {
     /// The input.
     pub input: String,
     /// The value at which the risk is highest.
@@ -58,13 +58,13 @@ pub struct Alone {
 /// assert_eq!((at_limit.term.as_deref(), at_limit.level), (Some("much"), Level::Fail));
 /// # Ok::<(), &str>(())
 /// ```
-pub fn alone(estimator: &Estimator) -> Vec<Alone> {
-    let mut worst: Vec<Option<Alone>> = Vec::new();
+pub fn alone(estimator: &Estimator) -> Vec<OutvotedInput> {
+    let mut worst: Vec<Option<OutvotedInput>> = Vec::new();
     for risk in core::iter::once(estimator).chain(estimator.others()) {
         let found = of_risk(risk);
         worst.resize(found.len(), None);
         for (worst, found) in worst.iter_mut().zip(found) {
-            let is_worse = |one: &Alone, known: &Alone| {
+            let is_worse = |one: &OutvotedInput, known: &OutvotedInput| {
                 (one.level, one.risk_pct) > (known.level, known.risk_pct)
             };
             let (one, known) = (found.as_ref(), worst.as_ref());
@@ -80,7 +80,7 @@ pub fn alone(estimator: &Estimator) -> Vec<Alone> {
 ///
 /// The inputs from motor commands are symptoms of one cause and rise together, so each of them may be one vote among
 /// many. A problem that another signal measures may not show in the motors at all.
-pub(super) fn outvoted(estimator: &Estimator, at: &Places) -> Vec<Diagnostic> {
+pub(super) fn outvoted(estimator: &Estimator, at: &ValuePositions) -> Vec<Diagnostic> {
     let profile = estimator.profile();
     let alone = alone(estimator);
     let is_other = |input: &&ProfileInput| !input.source.signal.is_made_of_motors();
@@ -95,7 +95,7 @@ pub(super) fn outvoted(estimator: &Estimator, at: &Places) -> Vec<Diagnostic> {
     found.collect()
 }
 
-fn message(one: &Alone, profile: &Profile) -> String {
+fn message(one: &OutvotedInput, profile: &Profile) -> String {
     let mut others = profile.other_risks.iter();
     let other = others.find(|risk| risk.output == one.risk_output);
     let warn = other.map_or(profile.verdict.warn, |risk| risk.warn);
@@ -113,7 +113,7 @@ fn message(one: &Alone, profile: &Profile) -> String {
 }
 
 /// Formats a value with its term: `0 (empty)`.
-fn at(one: &Alone) -> String {
+fn at(one: &OutvotedInput) -> String {
     let value = shown_value(one.value);
     match &one.term {
         Some(term) => format!("{value} (`{term}`)"),
@@ -121,7 +121,7 @@ fn at(one: &Alone) -> String {
     }
 }
 
-fn help(one: &Alone) -> String {
+fn help(one: &OutvotedInput) -> String {
     let term = one.term.as_deref().unwrap_or("TERM");
     format!(
         "the rules about the other inputs outweigh it: let rules with `{input} IS {term}` conclude an output of its own, such as `{input}_risk`, and name that output in `other_risks`",
@@ -136,7 +136,7 @@ fn shown_value(x: f64) -> String {
 }
 
 /// The highest risk of each input of the profile, for one risk output.
-fn of_risk(estimator: &Estimator) -> Vec<Option<Alone>> {
+fn of_risk(estimator: &Estimator) -> Vec<Option<OutvotedInput>> {
     let profile = estimator.profile();
     let model = estimator.model();
     let variables = profile.inputs.iter().map(|input| {
@@ -148,7 +148,7 @@ fn of_risk(estimator: &Estimator) -> Vec<Option<Alone>> {
         .iter()
         .map(|variable| variable.map_or(Vec::new(), values))
         .collect();
-    let mut search = Search::of(estimator);
+    let mut search = OutvotedSearch::of(estimator);
     let starts: [fn(&Variable) -> f64; 3] = [
         |variable| variable.low,
         |variable| variable.low / 2.0 + variable.high / 2.0,
@@ -182,7 +182,7 @@ fn of_risk(estimator: &Estimator) -> Vec<Option<Alone>> {
         let (value, _) = highest?;
         *point.get_mut(index)? = value;
         let (risk_pct, _) = search.lowest(point, all, Some(index))?;
-        Some(Alone {
+        Some(OutvotedInput {
             input: profile.inputs.get(index)?.name.clone(),
             value,
             term: term(variable.as_ref()?, value),
@@ -194,22 +194,22 @@ fn of_risk(estimator: &Estimator) -> Vec<Option<Alone>> {
     found.collect()
 }
 
-struct Search<'e> {
+struct OutvotedSearch<'e> {
     estimator: &'e Estimator,
     memory: Memory,
     /// The remaining budget of evaluations.
     left: usize,
 }
 
-impl<'e> Search<'e> {
-    fn of(estimator: &'e Estimator) -> Search<'e> {
+impl<'e> OutvotedSearch<'e> {
+    fn of(estimator: &'e Estimator) -> OutvotedSearch<'e> {
         let model = estimator.model();
         let terms: usize = model.inputs.iter().map(|input| input.terms.len()).sum();
         let work = model.rules.len() + terms;
-        Search {
+        OutvotedSearch {
             estimator,
             memory: Memory::of(estimator),
-            left: (MOST_STEPS / work.max(1)).max(1000),
+            left: (MAX_STEPS / work.max(1)).max(1000),
         }
     }
 

@@ -187,16 +187,17 @@ fn an_input_that_raises_no_level_alone_is_reported_as_outvoted() {
         let reached = alone(&estimator)
             .into_iter()
             .find(|one| one.input == "battery");
-        let told = outvoted(&fuzzy::Source::new(&*text), &estimator).0;
+        let reported = outvoted(&fuzzy::Source::new(&*text), &estimator).0;
         (
             reached.unwrap(),
-            told.iter()
+            reported
+                .iter()
                 .map(|one| text[one.span.clone()].to_string())
                 .collect::<Vec<_>>(),
         )
     };
     let vote = "IF battery IS empty THEN risk IS very_high";
-    let (reached, told) = found(vote, "{last: battery_remaining_pct}");
+    let (reached, reported) = found(vote, "{last: battery_remaining_pct}");
     // By hand: the battery votes for 95 with weight 1, other inputs for 5, 25 and 5 with weights 0.66, 0.33 and 0.66.
     let expected = (95.0 + 14.85) / (1.0 + 1.65);
     assert!((reached.risk_pct - expected).abs() < 1e-9, "{reached:?}");
@@ -205,7 +206,7 @@ fn an_input_that_raises_no_level_alone_is_reported_as_outvoted() {
         (0.0, Some("empty"))
     );
     assert_eq!(
-        (reached.level, told),
+        (reached.level, reported),
         (Level::Good, Vec::from(["battery".to_string()]))
     );
     // An input from the motors may be one vote among many.

@@ -4,7 +4,7 @@ use alloc::string::{String, ToString};
 use core::{fmt, ops::Deref};
 
 use super::RiskInterval;
-use crate::{estimator::Estimator, monitor::OfRisk, verdict};
+use crate::{estimator::Estimator, monitor::RiskFinding, verdict};
 
 /// A finding of a flight, with its cause by name.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,7 +56,7 @@ impl Finding {
     }
 
     /// A finding about another risk of the profile.
-    pub(super) fn elsewhere(of_risk: &OfRisk, estimator: &Estimator) -> Finding {
+    pub(super) fn elsewhere(of_risk: &RiskFinding, estimator: &Estimator) -> Finding {
         let other = estimator.others().get(of_risk.risk).unwrap_or(estimator);
         Finding {
             risk_output: Some(other.profile().output.clone()),

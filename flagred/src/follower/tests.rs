@@ -315,7 +315,7 @@ fn noise_is_information_and_changes_no_level() {
         let even = ((t_s * 10.0 + 1e-6) as u32).is_multiple_of(2);
         [if even { 0.45 } else { 0.55 }; 4]
     };
-    for (above, is_told) in [(0.04, true), (0.08, false)] {
+    for (above, is_reported) in [(0.04, true), (0.08, false)] {
         let mut flown = noticing(NoticeSettings {
             noise: limit(above, 3.0),
             ..NoticeSettings::default()
@@ -323,7 +323,7 @@ fn noise_is_information_and_changes_no_level() {
         let updates = flown.fly_with(30.0, true, shaken);
         assert!(updates.iter().all(|update| update.change.is_none()));
         let [_, noise, ..] = flown.monitor.finish();
-        assert_eq!(noise.is_some(), is_told, "{noise:?}");
+        assert_eq!(noise.is_some(), is_reported, "{noise:?}");
         if let Some(noise) = noise {
             assert_eq!(
                 (noise.severity, noise.measure),

@@ -11,10 +11,10 @@ use fuzzy::{
 use super::is_gap;
 
 /// The number of examined rules after which the proof is abandoned.
-const MOST_STEPS: usize = 5_000_000;
+const MAX_STEPS: usize = 5_000_000;
 
 /// The minimum degree of each term in each interval of an input.
-type Least = Vec<Vec<f64>>;
+type MinimumDegrees = Vec<Vec<f64>>;
 
 /// Whether the rules of an output are proven to cover all values of the inputs, so that none counts as a gap.
 ///
@@ -26,7 +26,7 @@ pub(crate) fn has_no_gap(model: &Model, output: &Output, coverage_below: f64) ->
     if !model.reads(&output.variable.name).is_empty() || !is_plain(model) {
         return false;
     }
-    let inputs: Vec<Least> = model.inputs.iter().map(least_degrees).collect();
+    let inputs: Vec<MinimumDegrees> = model.inputs.iter().map(least_degrees).collect();
     let is_output = |name: &Name| name.text == output.variable.name;
     let concludes = |rule: &Rule| rule.consequents.iter().any(|c| is_output(&c.output));
     let rules = model
@@ -52,7 +52,7 @@ pub(crate) fn has_no_gap(model: &Model, output: &Output, coverage_below: f64) ->
     for (input, _) in rules.iter_mut().flat_map(|rule| &mut rule.literals) {
         *input = order.iter().position(|i| i == input).unwrap_or_default();
     }
-    let mut search = Search {
+    let mut search = GapSearch {
         inputs: order.iter().map(|&input| &inputs[input]).collect(),
         rules,
         and: model.operators.and,
@@ -75,8 +75,8 @@ struct Antecedent {
 }
 
 /// A depth-first search for a cell that no rule covers.
-struct Search<'a> {
-    inputs: Vec<&'a Least>,
+struct GapSearch<'a> {
+    inputs: Vec<&'a MinimumDegrees>,
     rules: Vec<Antecedent>,
     and: Conjunction,
     coverage_below: f64,
@@ -85,7 +85,7 @@ struct Search<'a> {
     steps: usize,
 }
 
-impl Search<'_> {
+impl GapSearch<'_> {
     /// Whether all cells that have the intervals in `cell` for the first inputs are covered. A rule that reads no
     /// further input covers all of them at once.
     fn is_covered(&mut self) -> bool {
@@ -104,7 +104,7 @@ impl Search<'_> {
         };
         (0..intervals).all(|interval| {
             self.cell.push(interval);
-            let covered = self.steps < MOST_STEPS && self.is_covered();
+            let covered = self.steps < MAX_STEPS && self.is_covered();
             self.cell.pop();
             covered
         })
@@ -128,7 +128,7 @@ impl Search<'_> {
     }
 }
 
-fn least_degrees(input: &Variable) -> Least {
+fn least_degrees(input: &Variable) -> MinimumDegrees {
     let corners: Vec<_> = input
         .terms
         .iter()

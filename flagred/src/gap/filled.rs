@@ -46,7 +46,7 @@ impl FilledKnots<'_> {
     /// there are too many vertices, this is the range of all values. `None` if there is not one interval for each input.
     #[cfg(feature = "std")]
     pub(crate) fn within(&self, inputs: &[Interval]) -> Option<Interval> {
-        const MOST_VERTICES: usize = 4096;
+        const MAX_VERTICES: usize = 4096;
         let mut points = alloc::vec![alloc::vec::Vec::new()];
         for (axis, interval) in inputs.iter().enumerate() {
             let (start, end) = (self.starts.get(axis)?, self.starts.get(axis + 1)?);
@@ -71,7 +71,7 @@ impl FilledKnots<'_> {
                         .map(move |x| [&point[..], &[x]].concat())
                 })
                 .collect();
-            if points.len() > MOST_VERTICES {
+            if points.len() > MAX_VERTICES {
                 return hull(self.values.iter().copied());
             }
         }

@@ -104,7 +104,7 @@ impl Filling {
     /// `None` if the rules leave no gap or cover nothing, if the output depends on too many inputs (over 15 of two
     /// terms each), if the point has another number of coordinates, or if one is NaN.
     pub fn read(&self, point: &[f64]) -> Option<Reading> {
-        self.lend()?.read(point)
+        self.borrowed()?.read(point)
     }
 
     /// The coverage below which a point is a gap.
@@ -113,7 +113,7 @@ impl Filling {
     }
 
     /// The filled knots; `None` if nothing is filled.
-    pub(crate) fn lend(&self) -> Option<FilledKnots<'_>> {
+    pub(crate) fn borrowed(&self) -> Option<FilledKnots<'_>> {
         (!self.values.is_empty()).then_some(FilledKnots {
             coordinates: &self.places,
             starts: &self.starts,

@@ -10,7 +10,7 @@ use super::field::Field;
 const TOLERANCE: f64 = 1e-9;
 
 /// The maximum number of sweeps. Gaps are a few terms wide, so the iteration converges long before this limit.
-const MOST_SWEEPS: usize = 20_000;
+const MAX_SWEEPS: usize = 20_000;
 
 /// The over-relaxation factor.
 const RELAXATION: f64 = 1.5;
@@ -30,7 +30,7 @@ pub(super) fn fill(field: &mut Field) {
         .into_iter()
         .map(|knot| (knot, field.beside(knot)))
         .collect();
-    for _ in 0..MOST_SWEEPS {
+    for _ in 0..MAX_SWEEPS {
         let mut largest = 0.0_f64;
         for (knot, beside) in &gap {
             let weights: f64 = beside.iter().map(|(_, weight)| weight).sum();

@@ -11,7 +11,7 @@ use super::filled::read;
 
 /// The maximum number of knots at the peaks and between them. Larger grids are thinned, which bounds the cost of filling for
 /// any number of inputs.
-const MOST_KNOTS: usize = 40_000;
+const MAX_KNOTS: usize = 40_000;
 
 /// A grid over the inputs of a rule set, with a coordinate at the peak of every term and one halfway between each two
 /// peaks.
@@ -46,10 +46,10 @@ impl Knots {
         });
         let mut axes: Vec<Vec<f64>> = axes.collect();
         let finer: Vec<Vec<f64>> = axes.iter().map(|peaks| with_middles(peaks)).collect();
-        if count(&finer) <= MOST_KNOTS {
+        if count(&finer) <= MAX_KNOTS {
             axes = finer;
         }
-        while count(&axes) > MOST_KNOTS {
+        while count(&axes) > MAX_KNOTS {
             let longest = axes.iter_mut().max_by_key(|axis| axis.len());
             let longest = longest.filter(|axis| axis.len() > 2)?;
             let last = longest.len() - 1;
@@ -75,7 +75,7 @@ impl Knots {
                 .collect()
         });
         let axes: Vec<Vec<f64>> = axes.collect();
-        match count(&axes) <= 4 * MOST_KNOTS {
+        match count(&axes) <= 4 * MAX_KNOTS {
             true => Knots::over(axes, self.ranges.clone()),
             false => self.clone(),
         }
@@ -222,7 +222,7 @@ rules: []
         let input = |i| format!("x{i}: {{range: [0, 1], partition: [a, b, c, d, e]}}");
         let inputs: Vec<String> = (0..7).map(input).collect();
         let knots = knots(&inputs.join(", "));
-        assert!(knots.count() <= MOST_KNOTS, "{}", knots.count());
+        assert!(knots.count() <= MAX_KNOTS, "{}", knots.count());
         for places in &knots.axes {
             assert_eq!((places[0], places[places.len() - 1]), (0.0, 1.0));
         }

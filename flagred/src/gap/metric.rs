@@ -11,7 +11,7 @@ use super::knots::Knots;
 
 /// The minimum weight of an input, as a share of the largest weight, so that knots along it have different coordinates
 /// even if the output hardly changes there.
-const LEAST_CHANGE: f64 = 1e-3;
+const MIN_CHANGE: f64 = 1e-3;
 
 /// Coordinates are rounded to multiples of this, so that equal distances are equal to the last bit.
 const QUANTUM: f64 = 1.0 / (1u64 << 20) as f64;
@@ -27,7 +27,7 @@ pub(super) fn coordinates(knots: &Knots, values: &[f64], covered: &[bool]) -> Ve
     let mean = known().sum::<f64>() / known().count().max(1) as f64;
     // If the output does not change anywhere, all inputs count the same.
     let weight = |change: Option<f64>| match largest > 0.0 {
-        true => (change.unwrap_or(mean) / largest).max(LEAST_CHANGE),
+        true => (change.unwrap_or(mean) / largest).max(MIN_CHANGE),
         false => 1.0,
     };
     let steps = |axis: usize| -> Vec<f64> {

@@ -578,9 +578,9 @@ fn a_missing_signal_has_its_default_until_it_first_arrives() {
             let input = monitor.inputs()[0];
             assert_eq!(input.to_bits(), inputs[i].to_bits(), "{i}: {input}");
             assert_eq!(update.risk.is_ok(), input.is_finite(), "{i}");
-            let told = on_board.push(&sample);
+            let reported = on_board.push(&sample);
             if craft != known {
-                assert_eq!(told, update);
+                assert_eq!(reported, update);
             }
         }
     }

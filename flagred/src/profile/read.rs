@@ -32,7 +32,7 @@ const VERSION: u64 = 1;
 /// The window of an input in seconds, if neither the input nor the profile sets one.
 const WINDOW_S: f64 = 2.0;
 
-type Found = Vec<Diagnostic>;
+type Mistakes = Vec<Diagnostic>;
 
 impl FromStr for Profile {
     type Err = Findings;
@@ -57,7 +57,7 @@ impl Profile {
     }
 }
 
-fn read(tree: &Node, found: &mut Found) -> Option<Profile> {
+fn read(tree: &Node, found: &mut Mistakes) -> Option<Profile> {
     let keys = [
         "flagred",
         "name",
@@ -165,13 +165,13 @@ fn read(tree: &Node, found: &mut Found) -> Option<Profile> {
     Some(profile)
 }
 
-fn required_words(fields: &Fields, key: &str, help: &str, found: &mut Found) -> Option<String> {
+fn required_words(fields: &Fields, key: &str, help: &str, found: &mut Mistakes) -> Option<String> {
     let node = fields.require(key, help, found)?;
     node.words(&format!("`{key}`"), help, found)
         .map(|words| words.text.clone())
 }
 
-fn sampling(fields: &Fields, found: &mut Found) -> Sampling {
+fn sampling(fields: &Fields, found: &mut Mistakes) -> Sampling {
     let default = Sampling::default();
     let min_samples = fields
         .get("min_samples")
@@ -198,7 +198,7 @@ fn sampling(fields: &Fields, found: &mut Found) -> Sampling {
     }
 }
 
-fn gap(fields: &Fields, found: &mut Found) -> GapSettings {
+fn gap(fields: &Fields, found: &mut Mistakes) -> GapSettings {
     let mut gap = GapSettings::default();
     let Some(fields) = fields.get("gap").and_then(|node| {
         let help = "write `gap: {method: nearest}`";
@@ -215,7 +215,7 @@ fn gap(fields: &Fields, found: &mut Found) -> GapSettings {
     gap
 }
 
-fn method(node: &Node, found: &mut Found) -> Option<GapMethod> {
+fn method(node: &Node, found: &mut Mistakes) -> Option<GapMethod> {
     let words = GapMethod::ALL.map(|method| (method.name(), method));
     let Value::Mapping(_) = node.value else {
         return node.choice("the gap method", &words, found);
@@ -235,7 +235,7 @@ fn method(node: &Node, found: &mut Found) -> Option<GapMethod> {
 }
 
 /// Reads the other outputs that are risks; missing settings are taken from the first risk.
-fn other_risks(fields: &Fields, defaults: &OtherRisk, found: &mut Found) -> Vec<OtherRisk> {
+fn other_risks(fields: &Fields, defaults: &OtherRisk, found: &mut Mistakes) -> Vec<OtherRisk> {
     let entries = fields.get("other_risks").and_then(|node| {
         let help =
             "write each output by its name: `other_risks: {battery_risk: {warn: {risk: 60}}}`";
@@ -268,7 +268,7 @@ fn other_risks(fields: &Fields, defaults: &OtherRisk, found: &mut Found) -> Vec<
 fn elevated_risk(
     fields: &Fields,
     default: AccumulatorSettings,
-    found: &mut Found,
+    found: &mut Mistakes,
 ) -> AccumulatorSettings {
     let keys = ["window_s", "high", "low", "rise_per_s", "fall_per_s"];
     let Some(fields) = fields.get("elevated_risk").and_then(|node| {
@@ -321,7 +321,7 @@ enum Bounds {
 }
 
 /// Reads an optional number.
-fn number(fields: &Fields, key: &str, default: f64, bounds: Bounds, found: &mut Found) -> f64 {
+fn number(fields: &Fields, key: &str, default: f64, bounds: Bounds, found: &mut Mistakes) -> f64 {
     let Some(node) = fields.get(key) else {
         return default;
     };

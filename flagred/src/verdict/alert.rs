@@ -17,7 +17,7 @@ pub(crate) struct Alert {
     reached_since_s: [Option<f64>; 2],
     finding: Option<Finding>,
     /// Whether the level of the finding was raised but its cause is not set yet.
-    asks_why: bool,
+    needs_cause: bool,
 }
 
 /// The margin above which a motor cannot be the cause.
@@ -39,7 +39,7 @@ pub(crate) struct Now {
     /// Whether the take-off was so recent that only FAIL is raised.
     pub(crate) takes_off: bool,
     /// Whether all motors slow down together, as at touch-down; then FAIL is not raised.
-    pub(crate) sinks: bool,
+    pub(crate) slow_down_together: bool,
     /// Whether the motors idle in the air.
     pub(crate) falls: bool,
 }
@@ -52,7 +52,7 @@ impl Alert {
             last_held_s: 0.0,
             reached_since_s: [None; 2],
             finding: None,
-            asks_why: false,
+            needs_cause: false,
         }
     }
 
@@ -66,13 +66,13 @@ impl Alert {
     }
 
     /// Whether the latest sample raised the level of the finding, so that its cause must be set by [`Alert::explain`].
-    pub(crate) fn asks_why(&self) -> bool {
-        self.asks_why
+    pub(crate) fn needs_cause(&self) -> bool {
+        self.needs_cause
     }
 
     /// Sets the cause of the finding; a motor is named only if motors near a limit are the cause.
     pub(crate) fn explain(&mut self, cause: Option<Cause>, is_of_limits: impl Fn(usize) -> bool) {
-        self.asks_why = false;
+        self.needs_cause = false;
         if let Some(finding) = &mut self.finding {
             finding.cause = cause;
             finding.motor = finding.motor.filter(|found| is_of_limits(found.number - 1));
@@ -85,12 +85,12 @@ impl Alert {
             risk_pct,
             elevated_pct,
             takes_off,
-            sinks,
+            slow_down_together,
             falls,
         } = now;
         let mut step = Step::default();
         let mut held = Level::Good;
-        self.asks_why = false;
+        self.needs_cause = false;
         let levels = [
             (Level::Warn, self.settings.warn),
             (Level::Fail, self.settings.fail),
@@ -99,7 +99,7 @@ impl Alert {
             match if level == Level::Warn {
                 takes_off
             } else {
-                sinks
+                slow_down_together
             } {
                 true => None,
                 false => settings.raise.reached(risk_pct, elevated_pct),
@@ -182,7 +182,7 @@ impl Alert {
         let failed_s = opened.failed_s.or(failed_s);
         let same = opened.severity == level;
         let is_worse = level > opened.severity;
-        self.asks_why = is_worse;
+        self.needs_cause = is_worse;
         self.finding = Some(Finding {
             severity: level.max(opened.severity),
             failed_s,
@@ -226,7 +226,7 @@ impl Alert {
     }
 
     fn end_finding(&mut self) -> Option<Finding> {
-        self.asks_why = false;
+        self.needs_cause = false;
         self.finding.take()
     }
 }
@@ -289,14 +289,14 @@ mod tests {
     };
 
     #[derive(Clone)]
-    struct Flown {
+    struct SimulatedFlight {
         alert: Alert,
         motors: [Motor; 2],
     }
 
-    impl Flown {
-        fn new(commands: [f64; 2]) -> Flown {
-            Flown {
+    impl SimulatedFlight {
+        fn new(commands: [f64; 2]) -> SimulatedFlight {
+            SimulatedFlight {
                 alert: Alert::new(SETTINGS),
                 motors: commands.map(Motor::at),
             }
@@ -308,7 +308,7 @@ mod tests {
                 risk_pct,
                 elevated_pct,
                 takes_off: false,
-                sinks: false,
+                slow_down_together: false,
                 falls: false,
             };
             self.alert.push(now, &mut self.motors)
@@ -320,8 +320,8 @@ mod tests {
     }
 
     /// Runs phases of (seconds, risk, elevated risk) at 10 Hz, with a motor near its upper limit.
-    fn run(phases: &[(f64, f64, f64)]) -> (Vec<(f64, Level)>, Vec<Finding>, Flown) {
-        let mut flown = Flown::new([0.4, 0.95]);
+    fn run(phases: &[(f64, f64, f64)]) -> (Vec<(f64, Level)>, Vec<Finding>, SimulatedFlight) {
+        let mut flown = SimulatedFlight::new([0.4, 0.95]);
         let (mut changes, mut findings, mut i) = (vec![], vec![], 0);
         for (seconds, risk, elevated) in phases {
             for _ in 0..(seconds * 10.0) as usize {
@@ -337,7 +337,7 @@ mod tests {
 
     #[test]
     fn of_two_motors_at_zero_the_one_that_stopped_first_is_named() {
-        let mut flown = Flown::new([0.0, 0.0]);
+        let mut flown = SimulatedFlight::new([0.0, 0.0]);
         // An `at_zero_s` of 0 stands for a motor at the upper limit, which is as near to its limit.
         for (at_zero_s, named) in [
             ([0.1, 0.3], 2),
@@ -412,14 +412,14 @@ mod tests {
     fn just_after_take_off_only_fail_is_raised() {
         for (risk_pct, elevated_pct, level) in [(0.0, 60.0, Level::Good), (99.0, 60.0, Level::Fail)]
         {
-            let mut flown = Flown::new([0.4, 0.95]);
+            let mut flown = SimulatedFlight::new([0.4, 0.95]);
             for i in 0..20 {
                 let now = Now {
                     t_s: f64::from(i) / 10.0,
                     risk_pct,
                     elevated_pct,
                     takes_off: true,
-                    sinks: false,
+                    slow_down_together: false,
                     falls: false,
                 };
                 flown.alert.push(now, &mut flown.motors);
@@ -451,7 +451,7 @@ mod tests {
     /// Motor 2 at its upper limit raises the level; afterwards motor 1 is at its lower limit for a long time.
     #[test]
     fn the_motor_is_determined_when_the_level_is_raised() {
-        let mut flown = Flown::new([0.4, 0.95]);
+        let mut flown = SimulatedFlight::new([0.4, 0.95]);
         for i in 0..300 {
             if i == 60 {
                 flown.motors = [0.0, 0.5].map(Motor::at);
@@ -466,7 +466,7 @@ mod tests {
     #[test]
     fn a_motor_far_from_its_limits_is_not_named() {
         for (command, is_named) in [(0.85, false), (0.95, true), (0.05, true), (0.17, false)] {
-            let mut flown = Flown::new([0.5, command]);
+            let mut flown = SimulatedFlight::new([0.5, command]);
             for i in 0..20 {
                 flown.push(f64::from(i) / 10.0, 99.0, 0.0);
             }

@@ -35,11 +35,11 @@ const APART: f64 = 0.05;
 pub(super) struct Balance {
     load: Average,
     is_back: bool,
-    sinks: bool,
+    slow_down_together: bool,
 }
 
 /// A motor that is out of balance.
-pub(super) struct Unbalanced {
+pub(super) struct UnbalancedMotor {
     pub(super) measure: Measure,
     /// The deviation, on the effective range.
     pub(super) value: f64,
@@ -50,15 +50,15 @@ pub(super) struct Unbalanced {
 /// The results for one sample.
 #[derive(Default)]
 pub(super) struct BalanceFindings {
-    pub(super) weak: Option<Unbalanced>,
-    pub(super) imbalance: Option<Unbalanced>,
+    pub(super) weak: Option<UnbalancedMotor>,
+    pub(super) imbalance: Option<UnbalancedMotor>,
 }
 
 impl Balance {
     pub(super) const NONE: Balance = Balance {
         load: Average::NONE,
         is_back: false,
-        sinks: false,
+        slow_down_together: false,
     };
 
     /// Whether all motors work as before the alarm; if no trim was learned before it, whether they work alike.
@@ -67,8 +67,8 @@ impl Balance {
     }
 
     /// Whether all motors slow down together, as they do at touch-down.
-    pub(super) fn sinks(&self) -> bool {
-        self.sinks
+    pub(super) fn slow_down_together(&self) -> bool {
+        self.slow_down_together
     }
 
     /// Processes a sample in which all commands are known. Trims are learned only while there is no alarm.
@@ -82,7 +82,7 @@ impl Balance {
         let limit = limit.value;
         let mean = motors.iter().map(|m| m.command).sum::<f64>() / motors.len() as f64;
         let load = self.load.known_after(LOAD_S);
-        self.sinks = load.is_some_and(|load| mean < load / 2.0) && is_together(motors);
+        self.slow_down_together = load.is_some_and(|load| mean < load / 2.0) && is_together(motors);
         if !mean.is_finite() {
             return BalanceFindings::default();
         }
@@ -112,7 +112,7 @@ impl Balance {
             Some(_) => None,
             None => from_trim(motors, limit)
                 .filter(|_| is_known)
-                .or_else(|| at_odds(motors, 2.0 * limit)),
+                .or_else(|| unbalanced_motor(motors, 2.0 * limit)),
         };
         BalanceFindings { weak, imbalance }
     }
@@ -139,7 +139,7 @@ fn is_settled(motors: &[Motor]) -> bool {
 
 /// The motor that is above its trim, if that explains the shifts of all motors: by the mixer, a motor `i` that loses
 /// thrust shifts the commands by column `i` of the projection onto roll, pitch, yaw and thrust.
-fn weak(motors: &[Motor], limit: f64) -> Option<Unbalanced> {
+fn weak(motors: &[Motor], limit: f64) -> Option<UnbalancedMotor> {
     let (motor, shift) = highest(motors, Motor::shift, None)?;
     let count = motors.len() as f64;
     let own = (count - 1.0).min(3.0) / count;
@@ -149,7 +149,7 @@ fn weak(motors: &[Motor], limit: f64) -> Option<Unbalanced> {
         // On a coaxial arm the command of the other motor may rise nearly as much.
         let next = highest(motors, Motor::shift, Some(motor));
         let other = next.filter(|(_, next)| !is_ahead(shift, *next));
-        Unbalanced {
+        UnbalancedMotor {
             measure: Measure::WeakMotor,
             value: shift,
             limit,
@@ -160,10 +160,10 @@ fn weak(motors: &[Motor], limit: f64) -> Option<Unbalanced> {
 
 /// The motor that is out of balance, if the command of a motor, without its yaw part, deviates from the trim by more
 /// than the limit.
-fn from_trim(motors: &[Motor], limit: f64) -> Option<Unbalanced> {
+fn from_trim(motors: &[Motor], limit: f64) -> Option<UnbalancedMotor> {
     let farthest = less_yaw(motors, Motor::shift).fold(0.0, |most: f64, x| most.max(x.abs()));
-    let motor = culprit(motors, Motor::shift)?;
-    (farthest > limit).then_some(Unbalanced {
+    let motor = responsible_motor(motors, Motor::shift)?;
+    (farthest > limit).then_some(UnbalancedMotor {
         measure: Measure::Imbalance,
         value: farthest,
         limit,
@@ -173,7 +173,7 @@ fn from_trim(motors: &[Motor], limit: f64) -> Option<Unbalanced> {
 
 /// A motor whose command exceeds that of the opposite one by more than the limit. Only this check detects a fault that was
 /// present before the trim was learned.
-fn at_odds(motors: &[Motor], limit: f64) -> Option<Unbalanced> {
+fn unbalanced_motor(motors: &[Motor], limit: f64) -> Option<UnbalancedMotor> {
     let lately = |motor: &Motor| motor.difference.value;
     let above = less_yaw(motors, lately)
         .zip(motors)
@@ -182,8 +182,8 @@ fn at_odds(motors: &[Motor], limit: f64) -> Option<Unbalanced> {
             Some(own - opposite)
         });
     let farthest = above.fold(0.0, f64::max);
-    let motor = culprit(motors, lately)?;
-    (farthest > limit && is_settled(motors)).then_some(Unbalanced {
+    let motor = responsible_motor(motors, lately)?;
+    (farthest > limit && is_settled(motors)).then_some(UnbalancedMotor {
         measure: Measure::PairImbalance,
         value: farthest,
         limit,
@@ -193,7 +193,10 @@ fn at_odds(motors: &[Motor], limit: f64) -> Option<Unbalanced> {
 
 /// The motor that gives too little thrust: the highest one if it is clearly above all others; otherwise the one that
 /// stopped first, or the highest one if none stopped. Two are returned if they cannot be distinguished.
-fn culprit(motors: &[Motor], value: impl Fn(&Motor) -> f64 + Copy) -> Option<MotorFinding> {
+fn responsible_motor(
+    motors: &[Motor],
+    value: impl Fn(&Motor) -> f64 + Copy,
+) -> Option<MotorFinding> {
     let (highest_one, most) = highest(motors, value, None)?;
     let next = highest(motors, value, Some(highest_one));
     let is_alone = next.is_none_or(|(_, next)| is_ahead(most, next));

@@ -5,7 +5,7 @@
 use super::{
     Finding, Level, Limit, Measure, MotorFinding, NoticeSettings,
     alert::ROUNDING_S,
-    balance::{self, Balance, Unbalanced},
+    balance::{self, Balance, UnbalancedMotor},
 };
 use crate::{average::Average, motor::Motor};
 
@@ -22,18 +22,18 @@ pub(crate) struct Notices {
     reserve: Average,
     balance: Balance,
     /// The states for the noise, the reserve, an imbalance and a weak motor.
-    watches: [Watch; 4],
+    watches: [NoticeState; 4],
 }
 
 /// The time since which a limit is exceeded, and the open finding.
 #[derive(Debug, Clone, Copy)]
-struct Watch {
+struct NoticeState {
     passed_since_s: Option<f64>,
     finding: Option<Finding>,
 }
 
 /// A value that exceeds its limit, and the motor to which the value belongs.
-struct Passed {
+struct Exceedance {
     measure: Measure,
     /// The value, on the effective range.
     value: f64,
@@ -49,7 +49,7 @@ impl Notices {
             noise_squared: Average::NONE,
             reserve: Average::NONE,
             balance: Balance::NONE,
-            watches: [Watch {
+            watches: [NoticeState {
                 passed_since_s: None,
                 finding: None,
             }; 4],
@@ -75,7 +75,7 @@ impl Notices {
         self.reserve.add(1.0 - mean, held_s, RESERVE_S);
 
         let settings = self.settings;
-        let plain = |measure, value, limit: Limit| Passed {
+        let plain = |measure, value, limit: Limit| Exceedance {
             measure,
             value,
             limit: limit.value,
@@ -95,8 +95,8 @@ impl Notices {
         let balance::BalanceFindings { weak, imbalance } = seen.unwrap_or_default();
         // A weak motor already explains the imbalance, so it is not reported separately.
         let imbalance = imbalance.filter(|_| self.watches[3].finding.is_none());
-        self.watches[2].push(t_s, Level::Warn, limit, imbalance.map(Passed::of));
-        self.watches[3].push(t_s, Level::Warn, limit, weak.map(Passed::of));
+        self.watches[2].push(t_s, Level::Warn, limit, imbalance.map(Exceedance::of));
+        self.watches[3].push(t_s, Level::Warn, limit, weak.map(Exceedance::of));
     }
 
     /// Whether the motors work as before an alarm; true if that is not monitored.
@@ -110,8 +110,8 @@ impl Notices {
     }
 
     /// Whether all motors slow down together; false if that is not monitored.
-    pub(crate) fn sinks(&self) -> bool {
-        self.balance.sinks()
+    pub(crate) fn slow_down_together(&self) -> bool {
+        self.balance.slow_down_together()
     }
 
     /// Ends the flight and returns the open findings.
@@ -131,15 +131,15 @@ impl Notices {
     }
 }
 
-impl Passed {
-    fn of(unbalanced: Unbalanced) -> Passed {
-        let Unbalanced {
+impl Exceedance {
+    fn of(unbalanced: UnbalancedMotor) -> Exceedance {
+        let UnbalancedMotor {
             measure,
             value,
             limit,
             motor,
         } = unbalanced;
-        Passed {
+        Exceedance {
             measure,
             value,
             limit,
@@ -148,10 +148,10 @@ impl Passed {
     }
 }
 
-impl Watch {
+impl NoticeState {
     /// Updates the finding. An open finding stays open until the flight ends, and keeps the motor and the limit with
     /// which it was opened.
-    fn push(&mut self, t_s: f64, level: Level, limit: Option<Limit>, passed: Option<Passed>) {
+    fn push(&mut self, t_s: f64, level: Level, limit: Option<Limit>, passed: Option<Exceedance>) {
         let (Some(Limit { after_s, .. }), Some(passed)) = (limit, passed) else {
             self.passed_since_s = None;
             return;

@@ -60,15 +60,15 @@ pub(super) struct Boxes {
 }
 
 /// The maximum number of boxes. The search stops there, because no author reads more of them.
-const MOST_BOXES: usize = 50;
+const MAX_BOXES: usize = 50;
 /// The maximum number of missing antecedents listed for a box.
-const MOST_MISSING: usize = 16;
+const MAX_MISSING: usize = 16;
 /// The maximum number of sides for which antecedents are listed. A rule for more sides would be too long to write.
-const MOST_SIDES_OF_A_RULE: usize = 6;
+const MAX_SIDES_OF_A_RULE: usize = 6;
 /// The maximum number of formula evaluations in the search for one output.
-const MOST_LOOKS: usize = 100_000;
+const MAX_LOOKS: usize = 100_000;
 /// The maximum number of formula evaluations in the searches for all outputs together.
-const MOST_LOOKS_IN_ALL: usize = 4_000_000;
+const MAX_LOOKS_IN_ALL: usize = 4_000_000;
 
 /// State that is shared by the searches for all outputs.
 pub(super) struct SearchBudget {
@@ -77,7 +77,7 @@ pub(super) struct SearchBudget {
 
 impl SearchBudget {
     pub(super) fn new() -> Self {
-        let looks_left = MOST_LOOKS_IN_ALL;
+        let looks_left = MAX_LOOKS_IN_ALL;
         SearchBudget { looks_left }
     }
 }
@@ -117,7 +117,7 @@ pub(super) fn uncovered(
 fn search(logic: &Logic, shared: &mut SearchBudget) -> (Vec<Cells>, bool) {
     let all: Vec<usize> = (0..logic.formulas.len()).collect();
     let mut boxes = Vec::new();
-    let most = shared.looks_left.min(MOST_LOOKS);
+    let most = shared.looks_left.min(MAX_LOOKS);
     let mut looks = 0;
     // The boxes to search, each with the formulas that may be true in it.
     let mut left = Vec::from([(logic.everywhere(), all)]);
@@ -125,7 +125,7 @@ fn search(logic: &Logic, shared: &mut SearchBudget) -> (Vec<Cells>, bool) {
         let more = formulas.len() + 1;
         looks += more;
         shared.looks_left = shared.looks_left.saturating_sub(more);
-        if looks > most || boxes.len() >= MOST_BOXES {
+        if looks > most || boxes.len() >= MAX_BOXES {
             return (boxes, false);
         }
         let Some(open) = undecided(logic, &cells, &formulas) else {
@@ -233,7 +233,7 @@ fn describe(
         .iter()
         .map(Vec::len)
         .fold(1usize, usize::saturating_mul);
-    let missing = combinations(&choices, MOST_MISSING);
+    let missing = combinations(&choices, MAX_MISSING);
     UncoveredRegion {
         output: output.into(),
         coverage: coverage.unwrap_or(0.0),
@@ -290,7 +290,7 @@ impl<'v> DominantTerms<'v> {
 /// Returns the combinations of one antecedent per choice, at most `most` of them.
 fn combinations(choices: &[Vec<Antecedent>], most: usize) -> Vec<Vec<Antecedent>> {
     if choices.is_empty()
-        || choices.len() > MOST_SIDES_OF_A_RULE
+        || choices.len() > MAX_SIDES_OF_A_RULE
         || choices.iter().any(Vec::is_empty)
     {
         return Vec::new();

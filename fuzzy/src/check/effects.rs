@@ -199,7 +199,7 @@ fn rounded(degree: f64) -> f64 {
 /// concludes the term fires; `None` if no such values were found. The ends of the ranges, where most formulas have
 /// their poles, are among the values tried.
 fn without_value(model: &Model, output: &str, term: &Term, formula: &Formula) -> Option<String> {
-    const MOST_POINTS: usize = 3000;
+    const MAX_POINTS: usize = 3000;
     if !has_a_value(model, formula) {
         return Some("any of the inputs tried".into());
     }
@@ -210,7 +210,7 @@ fn without_value(model: &Model, output: &str, term: &Term, formula: &Formula) ->
         let zero = (input.low < 0.0 && input.high > 0.0).then_some(0.0);
         let tried = [Some(middle), Some(input.low), Some(input.high), zero];
         let tried = tried.into_iter().flatten();
-        let count = match points.len() * 4 > MOST_POINTS && !is_read(input) {
+        let count = match points.len() * 4 > MAX_POINTS && !is_read(input) {
             true => 1,
             false => 4,
         };
@@ -220,7 +220,7 @@ fn without_value(model: &Model, output: &str, term: &Term, formula: &Formula) ->
                 .iter()
                 .map(move |value| point.iter().copied().chain([*value]).collect())
         });
-        points = longer.take(MOST_POINTS).collect();
+        points = longer.take(MAX_POINTS).collect();
     }
     let value_of = |point: &[f64], name: &str| {
         let mut inputs = model.inputs.iter().zip(point);

@@ -25,7 +25,7 @@ use crate::{
 };
 
 /// The maximum number of boxes that a finding lists; further boxes are only counted.
-const MOST_BOXES_TOLD: usize = 10;
+const MAX_BOXES_TOLD: usize = 10;
 
 /// Returns all diagnostics of a report, including those that the author accepts. `spans` contains the positions of the
 /// parts of the model.
@@ -34,10 +34,10 @@ pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnosti
     let mut found = Vec::new();
     duplicate_rules(model, &at, &mut found);
     let gaps = gaps(report);
-    for gap in gaps.iter().take(MOST_BOXES_TOLD) {
+    for gap in gaps.iter().take(MAX_BOXES_TOLD) {
         found.push(at.uncovered(gap));
     }
-    if let Some(more) = gaps.len().checked_sub(MOST_BOXES_TOLD)
+    if let Some(more) = gaps.len().checked_sub(MAX_BOXES_TOLD)
         && more > 0
     {
         found.push(at.more_uncovered(more, report.uncovered_complete));
@@ -332,17 +332,17 @@ impl ModelPositions<'_> {
     /// its own.
     fn never_fires(&self, index: usize, report: &Report) -> Option<Diagnostic> {
         let rule = &self.model.rules.get(index)?.rule;
-        let mut is_told = false;
+        let mut is_reported = false;
         if let Condition::Is(_) | Condition::And(_) = rule.condition {
             rule.condition.visit(&mut |proposition| {
                 let term = proposition.term.as_ref().map(|term| &term.text);
                 let of = |one: &TermOf| {
                     one.variable == proposition.variable.text && one.term.as_ref() == term
                 };
-                is_told |= proposition.hedges.is_empty() && report.unreachable.iter().any(of);
+                is_reported |= proposition.hedges.is_empty() && report.unreachable.iter().any(of);
             });
         }
-        if is_told {
+        if is_reported {
             return None;
         }
         let mut help = String::from("no inputs satisfy its condition, or its weight is 0");

@@ -31,8 +31,8 @@ pub(super) fn gaps(report: &Report) -> Vec<Gap<'_>> {
         };
         inner.output == outer.output && outer.sides.iter().all(contains)
     };
-    let told = || report.uncovered.iter().filter(|one| !in_hole(one));
-    let (silent, weak): (Vec<_>, Vec<_>) = told().partition(|one| one.silent);
+    let reported = || report.uncovered.iter().filter(|one| !in_hole(one));
+    let (silent, weak): (Vec<_>, Vec<_>) = reported().partition(|one| one.silent);
     let lone = silent
         .iter()
         .filter(|one| !weak.iter().any(|outer| within(one, outer)));

@@ -4,7 +4,7 @@ use alloc::{string::String, vec::Vec};
 
 use super::{
     axis,
-    probe::{Coordinate, Line, MOST_ON_A_LINE, NOTABLE, Probe},
+    probe::{Coordinate, Line, MAX_ON_A_LINE, NOTABLE, Probe},
 };
 
 /// A discontinuity of an output: between two neighbouring values of an input, the output changes by more than 0.5 % of
@@ -32,7 +32,7 @@ impl Probe<'_> {
         let mut found = Vec::new();
         let inputs = self.model.inputs.len();
         // The inputs share the budget of evaluations. If there are very many inputs, only the first ones are examined.
-        let most_inputs = (self.evaluations / (4 * MOST_ON_A_LINE)).max(1);
+        let most_inputs = (self.evaluations / (4 * MAX_ON_A_LINE)).max(1);
         for input in 0..inputs.min(most_inputs) {
             let lines = self.lines(input);
             for output in 0..self.model.outputs.len() {

@@ -12,7 +12,7 @@ use alloc::{boxed::Box, collections::BTreeMap, vec, vec::Vec};
 
 use super::axis;
 use crate::{
-    model::{LEAST_STRENGTH, Model, Variable},
+    model::{MIN_STRENGTH, Model, Variable},
     rule::{Condition, Hedge, Proposition},
 };
 
@@ -28,7 +28,7 @@ impl Level {
     pub(super) fn fires(model: &Model) -> Self {
         let least = model.least_strength;
         // The default of `least_strength` only absorbs rounding errors, so every degree above 0 counts.
-        let strict = least <= LEAST_STRENGTH;
+        let strict = least <= MIN_STRENGTH;
         Level {
             value: if strict { 0.0 } else { least },
             strict,
@@ -215,9 +215,9 @@ impl Logic {
 
     /// Returns whether a formula is true in some cell. Also returns true if the search takes too long.
     pub(super) fn holds_somewhere(&self, formula: &Formula) -> bool {
-        const MOST_LOOKS: usize = 2_000;
+        const MAX_LOOKS: usize = 2_000;
         let mut left = vec![self.everywhere()];
-        for _ in 0..MOST_LOOKS {
+        for _ in 0..MAX_LOOKS {
             let Some(cells) = left.pop() else {
                 return false;
             };

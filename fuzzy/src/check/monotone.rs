@@ -144,14 +144,14 @@ impl Probe<'_> {
         }
         let notable = |(fall, example): (f64, Counterexample)| {
             let output = example.claim.output.as_ref()?;
-            let asked = claim.output.as_ref().is_none_or(|name| name == output);
+            let requested = claim.output.as_ref().is_none_or(|name| name == output);
             let range = self
                 .model
                 .outputs
                 .iter()
                 .find(|o| o.variable.name == *output)?;
             let range = range.variable.high - range.variable.low;
-            (asked && fall > NOTABLE * range).then_some(example)
+            (requested && fall > NOTABLE * range).then_some(example)
         };
         worst.into_iter().flatten().filter_map(notable).collect()
     }

@@ -162,8 +162,8 @@ pub(super) fn remedies(model: &Model, output: &Output, unreached: &[UnreachedTer
         .iter()
         .map(|term| {
             let (first, last) = variable.plateau(&term.membership_function);
-            let told = unreached.iter().find(|one| one.term == term.name);
-            told.map_or((first + last) / 2.0, |one| one.peak)
+            let reported = unreached.iter().find(|one| one.term == term.name);
+            reported.map_or((first + last) / 2.0, |one| one.peak)
         })
         .collect();
     let numbers = listed(variable, &peaks, |peak| {

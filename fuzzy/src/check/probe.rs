@@ -24,12 +24,12 @@ pub struct Coordinate {
 }
 
 /// The maximum work of one analysis, in rules and terms evaluated at points: some tens of milliseconds.
-const MOST_STEPS: usize = 3_000_000;
+const MAX_STEPS: usize = 3_000_000;
 /// The maximum work of all analyses together, in rules, terms and memberships evaluated: about one second. A single
 /// evaluation of an output with many curved terms takes millions.
-const MOST_STEPS_IN_ALL: u64 = 200_000_000;
+const MAX_STEPS_IN_ALL: u64 = 200_000_000;
 /// The maximum number of points on a line along one input.
-pub(super) const MOST_ON_A_LINE: usize = 200;
+pub(super) const MAX_ON_A_LINE: usize = 200;
 /// The minimum change, as a fraction of the output's range, that counts as a jump or a counterexample.
 pub(super) const NOTABLE: f64 = 0.005;
 
@@ -56,7 +56,7 @@ impl<'m> Probe<'m> {
         let values = model
             .inputs
             .iter()
-            .map(|input| chosen(input, MOST_ON_A_LINE));
+            .map(|input| chosen(input, MAX_ON_A_LINE));
         let work = model.rules.len() + model.inputs.iter().map(|v| v.terms.len()).sum::<usize>();
         let terms = model.outputs.iter().map(|o| o.variable.terms.len());
         Probe {
@@ -65,9 +65,9 @@ impl<'m> Probe<'m> {
             scratch: engine.scratch(),
             outcomes: alloc::vec![Outcome::default(); model.outputs.len()],
             values: values.collect(),
-            evaluations: (MOST_STEPS / work.max(1)).clamp(100, 60_000),
+            evaluations: (MAX_STEPS / work.max(1)).clamp(100, 60_000),
             work: (work + terms.sum::<usize>()) as u64,
-            steps_left: MOST_STEPS_IN_ALL,
+            steps_left: MAX_STEPS_IN_ALL,
             is_complete: true,
         }
     }

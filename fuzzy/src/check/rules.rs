@@ -189,7 +189,7 @@ fn disagreement(model: &Model, first: usize, second: usize) -> Option<Contradict
 
 /// The maximum number of pairs of rules that are compared, which suffices for 10,000 rules with the same conclusion.
 /// Beyond that, only the first pairs are compared.
-const MOST_COMPARISONS: usize = 100_000_000;
+const MAX_COMPARISONS: usize = 100_000_000;
 
 /// Returns the rules that have no effect because a more general rule has the same block and conclusion. Equal rules are
 /// reported elsewhere.
@@ -224,7 +224,7 @@ pub(super) fn subsumed(model: &Model) -> Vec<SubsumedRule> {
             });
     }
     let mut found = Vec::new();
-    let mut left = MOST_COMPARISONS;
+    let mut left = MAX_COMPARISONS;
     for group in groups.values() {
         for narrow in group {
             left = left.saturating_sub(group.len());

@@ -66,10 +66,10 @@ fn large_rule_sets_are_checked_in_bounded_time() {
         assert!(started.elapsed().as_secs() < 120, "{:?}", started.elapsed());
         assert_eq!(report.reach_complete, is_complete);
         let findings = report.findings(&document.model, &document.spans);
-        let is_told = findings
+        let is_reported = findings
             .iter()
             .any(|one| one.code == "examined-in-part" && one.message.starts_with("evaluating"));
-        assert_eq!(is_told, !is_complete);
+        assert_eq!(is_reported, !is_complete);
         let narrow = findings.iter().any(|one| one.code == "narrow-reach");
         assert!(is_complete || !narrow);
     }
@@ -165,8 +165,8 @@ fn findings_of_the_papers_rules() {
     // IF margin IS medium AND spread IS high.
     assert_eq!(step.to_rule, 3);
 
-    let told: Vec<String> = findings.iter().map(ToString::to_string).collect();
-    insta::assert_snapshot!(told.join("\n"));
+    let reported: Vec<String> = findings.iter().map(ToString::to_string).collect();
+    insta::assert_snapshot!(reported.join("\n"));
 }
 
 #[test]
@@ -396,13 +396,13 @@ fn an_output_that_is_read_counts_as_an_input_over_its_range() {
         .map(|one| one.claim.output.as_deref())
         .collect();
     assert_eq!(wrong, [Some("z")]);
-    let told: Vec<&str> = findings
+    let reported: Vec<&str> = findings
         .iter()
         .map(|finding| finding.message.as_str())
         .collect();
     assert!(
-        told.contains(&"`mid` has no term from 0.4 to 0.6"),
-        "{told:?}"
+        reported.contains(&"`mid` has no term from 0.4 to 0.6"),
+        "{reported:?}"
     );
     let unknown = Monotone {
         input: "mid".into(),
@@ -589,17 +589,17 @@ fn reach_of(output: &str) -> Vec<String> {
     );
     let (_, findings) = report_of(&text, &Options::default());
     let found = findings.iter().filter(|one| one.code.ends_with("-reach"));
-    let told = found.map(|one| {
+    let reported = found.map(|one| {
         let help = one.help.as_deref().unwrap_or_default();
         format!("{:?}: {}\n{help}", one.severity, one.message)
     });
-    told.collect()
+    reported.collect()
 }
 
 #[test]
 fn an_outer_term_that_is_never_reached_is_a_warning_with_both_remedies() {
-    let told = reach_of("{range: [0, 40], partition: [off, short, medium, long]}");
-    insta::assert_snapshot!(told.join("\n"));
+    let reported = reach_of("{range: [0, 40], partition: [off, short, medium, long]}");
+    insta::assert_snapshot!(reported.join("\n"));
     // Applying the suggestion removes the finding.
     for remedy in [
         "{range: [-7.69, 47.69], partition: {off: 0, short: 13.3333, medium: 26.6667, long: 40}}",
@@ -627,8 +627,8 @@ fn each_cause_of_an_unreached_outer_term_has_its_own_message() {
         "{range: [0, 40], partition: [off, short, medium, long], defuzzifier: mean_of_maxima}",
         "{range: [0, 40], terms: {off: {singleton: 0}, short: {singleton: 10}, medium: {singleton: 20}, long: {singleton: 40}}}",
     ];
-    let told = outputs.map(|output| format!("# {output}\n{}\n", reach_of(output).join("\n")));
-    insta::assert_snapshot!(told.join("\n"));
+    let reported = outputs.map(|output| format!("# {output}\n{}\n", reach_of(output).join("\n")));
+    insta::assert_snapshot!(reported.join("\n"));
 }
 
 #[test]
@@ -666,9 +666,9 @@ rules: [IF dti IS fine THEN risk IS a, IF dti IS stretched THEN risk IS b, IF dt
 allow: [{finding: jump, because: limits of the regulation}]";
     assert_eq!(report_of(text, &Options::default()).1, []);
     let missing = text.replace("IF dti IS stretched THEN risk IS b, ", "");
-    let told: Vec<_> = report_of(&missing, &Options::default()).1;
-    let told: Vec<String> = told.iter().map(|one| one.to_string()).collect();
-    insta::assert_snapshot!(told.join("\n"));
+    let reported: Vec<_> = report_of(&missing, &Options::default()).1;
+    let reported: Vec<String> = reported.iter().map(|one| one.to_string()).collect();
+    insta::assert_snapshot!(reported.join("\n"));
 }
 
 #[test]

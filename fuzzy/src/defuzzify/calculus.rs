@@ -2,7 +2,7 @@
 //! whether straight lines stay straight between these.
 
 use crate::model::{Aggregation, Implication};
-use crate::table::LEAST_STRENGTH;
+use crate::table::MIN_STRENGTH;
 
 /// A degree, with its slope along the output's range.
 #[derive(Debug, Clone, Copy, Default)]
@@ -18,7 +18,7 @@ pub(super) fn activate(
     membership: SlopedDegree,
 ) -> SlopedDegree {
     let (h, m) = (strength, membership.degree);
-    if implication == Implication::Drastic && 1.0 - h > LEAST_STRENGTH && membership.slope != 0.0 {
+    if implication == Implication::Drastic && 1.0 - h > MIN_STRENGTH && membership.slope != 0.0 {
         // The result is above 0 only at the peak, which is a single point.
         return SlopedDegree::default();
     }
@@ -101,7 +101,7 @@ pub(super) fn levels(implication: Implication, strength: f64) -> [Option<f64>; 2
     match implication {
         Implication::Minimum => [Some(strength), None],
         Implication::BoundedDifference => [Some(1.0 - strength), None],
-        Implication::NilpotentMinimum => [Some(strength), Some(1.0 - strength + LEAST_STRENGTH)],
+        Implication::NilpotentMinimum => [Some(strength), Some(1.0 - strength + MIN_STRENGTH)],
         Implication::Product
         | Implication::Drastic
         | Implication::Einstein

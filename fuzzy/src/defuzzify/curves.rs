@@ -18,7 +18,7 @@ mod kinks;
 const EVENLY: u32 = 256;
 
 /// The maximum number of mutually crossing terms for which memory is reserved.
-const MOST_CROSSING: usize = 64;
+const MAX_CROSSING: usize = 64;
 
 /// The terms of one output, with the cuts of its range.
 #[derive(Debug, Clone)]
@@ -108,7 +108,7 @@ impl Curves {
     /// Returns the maximum number of cuts that an evaluation adds between two cuts, in addition to a fixed number per
     /// firing strength.
     pub(crate) fn workspace(&self) -> usize {
-        let crossing = self.terms.len().min(MOST_CROSSING);
+        let crossing = self.terms.len().min(MAX_CROSSING);
         4 * crossing * crossing
     }
 

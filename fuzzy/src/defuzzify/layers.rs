@@ -14,9 +14,9 @@ pub(crate) struct PreparedLayers {
 
 /// The maximum number of parts of an output. The number of bases has the same limit, because each base takes memory
 /// for one number per row.
-const MOST_PARTS: usize = 1024;
+const MAX_PARTS: usize = 1024;
 /// The minimum difference of degrees; for smaller ones the coefficients would overflow.
-const LEAST_DIFFERENCE: f64 = 1e-100;
+const MIN_DIFFERENCE: f64 = 1e-100;
 
 /// A part of the range on which a term is straight and the terms above it do not change.
 struct LayerSegment {
@@ -56,7 +56,7 @@ impl PreparedLayers {
                 layers.push(four);
             }
         }
-        if bases.bases.len() > MOST_PARTS {
+        if bases.bases.len() > MAX_PARTS {
             return None;
         }
         Some(PreparedLayers {
@@ -94,7 +94,7 @@ fn parts(prepared: &PreparedSet) -> Option<Vec<LayerSegment>> {
                 above.insert(place, strand.strength);
             }
         }
-        if parts.len() > MOST_PARTS {
+        if parts.len() > MAX_PARTS {
             return None;
         }
     }
@@ -113,7 +113,7 @@ impl LayerSegment {
         four.moment[0][index] = width * (from + 0.5 * length - origin);
         let difference = high - low;
         if difference > 0.0 {
-            if difference < LEAST_DIFFERENCE {
+            if difference < MIN_DIFFERENCE {
                 return None;
             }
             let (lower_end, sign) = if left < right {

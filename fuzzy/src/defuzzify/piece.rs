@@ -161,7 +161,7 @@ impl Piece<'_> {
 const DEEPEST: usize = 48;
 /// The maximum total number of halvings of a piece. This suffices to locate several missed kinks; the limit ends the
 /// search if rounding prevents agreement of the halves.
-const MOST_HALVINGS: usize = 400;
+const MAX_HALVINGS: usize = 400;
 
 /// The relative difference up to which an interval and its halves agree. The result is then accurate to rounding where
 /// the curve is smooth, and to this difference at a missed kink.
@@ -187,7 +187,7 @@ fn integrate(curve: &dyn Fn(f64) -> f64, end: f64, known: f64) -> (f64, f64) {
         let (halves, moments) = (left.0 + right.0, left.1 + right.1);
         let allowed = AGREEMENT * (known + larger(whole, sum + halves));
         let agree = libm::fabs(halves - area) <= allowed && libm::fabs(moments - moment) <= allowed;
-        if agree || open + 2 > DEEPEST || halvings >= MOST_HALVINGS {
+        if agree || open + 2 > DEEPEST || halvings >= MAX_HALVINGS {
             sum += halves;
             sum_of_moments += moments;
         } else {
@@ -266,6 +266,6 @@ mod tests {
         };
         let area = curve(0.0, 1.0, &counted).area();
         assert!((0.3..0.7).contains(&area), "{area}");
-        assert!(counter.get() < 50 * MOST_HALVINGS, "{}", counter.get());
+        assert!(counter.get() < 50 * MAX_HALVINGS, "{}", counter.get());
     }
 }

@@ -31,10 +31,10 @@ pub(crate) struct PreparedSet {
 }
 
 // A set with more elements would not fit the cache of the processor; it is integrated in each evaluation instead.
-const MOST_STRANDS: usize = 16_384;
-const MOST_TERMS: usize = 64;
-const MOST_FLANKS: usize = 512;
-const MOST_KNOTS: usize = 1024;
+const MAX_STRANDS: usize = 16_384;
+const MAX_TERMS: usize = 64;
+const MAX_FLANKS: usize = 512;
+const MAX_KNOTS: usize = 1024;
 
 impl PreparedSet {
     /// Prepares a set of terms that are scaled by their firing strengths or cut at them, and aggregated by sum or
@@ -45,7 +45,7 @@ impl PreparedSet {
         (scales, sum): (bool, bool),
         defuzzifier: SetDefuzzifier,
     ) -> Option<Self> {
-        if terms.len() > MOST_TERMS || terms.iter().any(is_formula) {
+        if terms.len() > MAX_TERMS || terms.iter().any(is_formula) {
             return None;
         }
         let measure = Measure {
@@ -109,7 +109,7 @@ impl PreparedSet {
             let flank = self.flank(term, &stretch, measure)?;
             self.flanks.push(flank);
         }
-        if self.flanks.len() > MOST_FLANKS {
+        if self.flanks.len() > MAX_FLANKS {
             return None;
         }
         let flanks = self.flanks.iter().skip(first_flank);
@@ -217,7 +217,7 @@ impl PreparedSet {
             }
             strands.sort_by(|a, b| b.0.total_cmp(&a.0));
             self.strands.extend(strands.iter().map(|strand| strand.1));
-            if self.strands.len() > MOST_STRANDS {
+            if self.strands.len() > MAX_STRANDS {
                 return None;
             }
             if self.strands.len() > first_strand {

@@ -30,7 +30,7 @@ use crate::table::operators::{larger, smaller};
 /// The maximum number of steps of the search for an end. A few are enough, unless the lower set is almost empty. In
 /// that case each step may reduce the distance to the end by only a third, but after this many steps the rest is far
 /// below rounding.
-const MOST_STEPS: usize = 250;
+const MAX_STEPS: usize = 250;
 
 /// The type reduction of an output.
 #[derive(Debug, Clone)]
@@ -388,7 +388,7 @@ fn search(
     mut sums: impl FnMut(f64) -> (f64, f64),
 ) -> f64 {
     let mut x = start;
-    for step in 0..MOST_STEPS {
+    for step in 0..MAX_STEPS {
         let (area, moment) = sums(x);
         let next = larger(low, smaller(high, x + moment / area));
         // The first step may come from the wrong side; all later ones approach the root from inside the interval, up to

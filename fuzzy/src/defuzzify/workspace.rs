@@ -45,7 +45,7 @@ impl Steps {
 
 /// The maximum number of straight pieces that a type reduction stores, of the lower and the upper set together. If there
 /// are more, the pieces are computed again in each step of the search.
-const MOST_LINES: usize = 256;
+const MAX_LINES: usize = 256;
 
 /// The approximate number of evaluations of each term that the integration of a curved piece takes.
 pub(super) const STEPS_OF_A_CURVE: usize = 16;
@@ -66,7 +66,7 @@ impl Workspace {
 
     /// Allocates memory for the straight pieces of a type reduction.
     pub(crate) fn with_lines(mut self) -> Self {
-        self.lines.reserve_exact(MOST_LINES);
+        self.lines.reserve_exact(MAX_LINES);
         self
     }
 }

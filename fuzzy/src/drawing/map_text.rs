@@ -17,9 +17,9 @@ const TABLE: usize = 6;
 const COVERED: f64 = 0.5;
 
 /// The maximum number of columns of a drawing.
-const MOST_COLUMNS: usize = 61;
+const MAX_COLUMNS: usize = 61;
 /// The maximum number of rows of a drawing.
-const MOST_ROWS: usize = 26;
+const MAX_ROWS: usize = 26;
 
 /// Formats a slice as text: a digit for the tenth of the range that contains the value, or a letter if the value was
 /// filled by interpolation.
@@ -197,11 +197,11 @@ fn mark(i: usize) -> char {
 }
 
 fn picture(text: &mut String, slice: &Slice, mut draw: impl FnMut(Cell) -> String) {
-    let columns = thinned(slice.columns(), MOST_COLUMNS);
+    let columns = thinned(slice.columns(), MAX_COLUMNS);
     let rows = match &slice.y {
         Some(y) => {
             line(text, format_args!("{}", y.title()));
-            thinned(y.points.len(), MOST_ROWS)
+            thinned(y.points.len(), MAX_ROWS)
         }
         None => vec![0],
     };

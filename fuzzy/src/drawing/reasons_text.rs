@@ -16,7 +16,7 @@ use crate::{
 const NEXT: f64 = 1e-9;
 
 /// The maximum number of rules that are listed.
-const MOST_RULES: usize = 20;
+const MAX_RULES: usize = 20;
 
 /// Formats the rules that do not fire, each with the reason on the next line; empty if all rules fire.
 pub fn silent_text(silent: &[SilentRule]) -> String {
@@ -26,13 +26,13 @@ pub fn silent_text(silent: &[SilentRule]) -> String {
     }
     // Writing to a String cannot fail.
     let _ = writeln!(text, "\nrules that do not fire");
-    for rule in silent.iter().take(MOST_RULES) {
+    for rule in silent.iter().take(MAX_RULES) {
         let (number, reason) = (rule.rule + 1, rule.silence.to_string());
         let _ = writeln!(text, "  {number}: {}", visible(&rule.text));
         let _ = writeln!(text, "     {}", visible(&reason));
     }
-    if silent.len() > MOST_RULES {
-        let _ = writeln!(text, "  and {} more", silent.len() - MOST_RULES);
+    if silent.len() > MAX_RULES {
+        let _ = writeln!(text, "  and {} more", silent.len() - MAX_RULES);
     }
     text
 }

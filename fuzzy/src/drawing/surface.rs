@@ -10,7 +10,7 @@ use super::{
 };
 
 /// The maximum number of points along an axis; more points only increase the file size.
-const MOST_POINTS: usize = 41;
+const MAX_POINTS: usize = 41;
 
 /// The rotation of the view about the vertical axis, in degrees; it is applied before the tilt.
 const TURN_DEG: f64 = 35.0;
@@ -63,8 +63,8 @@ pub fn surface_svg(slice: &Slice) -> Option<String> {
     document.heading(Frame::MAP.left, &slice.title(), &slice.held_text());
     floor(&mut document, &view, slice, y);
 
-    let columns = thinned(slice.columns(), MOST_POINTS);
-    let rows = thinned(slice.rows(), MOST_POINTS);
+    let columns = thinned(slice.columns(), MAX_POINTS);
+    let rows = thinned(slice.rows(), MAX_POINTS);
     let share = |i: usize, count: usize| i as f64 / (count - 1).max(1) as f64;
     let at = |i: usize, j: usize| (share(i, slice.columns()), share(j, slice.rows()));
     let mut quads = Vec::new();

@@ -15,7 +15,7 @@ use crate::table::{
 };
 
 /// The maximum number of terms for which a batch evaluates every formula; with more terms it looks up those above 0.
-const MOST_FORMULAS: u32 = 32;
+const MAX_FORMULAS: u32 = 32;
 
 macro_rules! define {
     ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {
@@ -113,7 +113,7 @@ impl OwnedTable {
     ) -> Option<Self> {
         let mut table = OwnedTable::empty(firing, outputs);
         table.sizes.degrees = literals.iter().map(|literals| literals.count).sum();
-        let is_small = may_be_programs(drafts) && table.sizes.degrees <= MOST_FORMULAS;
+        let is_small = may_be_programs(drafts) && table.sizes.degrees <= MAX_FORMULAS;
         if !is_small || !firing.blocks.is_empty() {
             return None;
         }

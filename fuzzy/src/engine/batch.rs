@@ -13,7 +13,7 @@ use crate::table::{self, Results};
 pub(crate) const ROWS: usize = 64;
 
 /// Batches with fewer rows are evaluated row by row, which is faster.
-const FEWEST_ROWS: usize = 16;
+const MIN_ROWS: usize = 16;
 
 /// The number of rows per task.
 #[cfg(feature = "parallel")]
@@ -212,7 +212,7 @@ impl Engine {
         let is_plain =
             self.chain.is_none() && stage.arrays.blocks.is_empty() && stage.bounds().is_none();
         Memory {
-            rows: (is_plain && rows >= FEWEST_ROWS).then(|| {
+            rows: (is_plain && rows >= MIN_ROWS).then(|| {
                 let arrays = stage.batch.as_ref().unwrap_or(&stage.arrays);
                 RowsScratch {
                     stage: stage.scratch(arrays),
@@ -245,7 +245,7 @@ impl Engine {
         for first in range.clone().step_by(ROWS) {
             let rows = first..range.end.min(first + ROWS);
             match several {
-                Some(several) if rows.len() >= FEWEST_ROWS => {
+                Some(several) if rows.len() >= MIN_ROWS => {
                     self.first.results(several, columns, rows.clone(), results);
                 }
                 _ => {

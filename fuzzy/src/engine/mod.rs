@@ -146,7 +146,7 @@ pub struct Scratch {
     /// The outcomes of all outputs of the model, used to search for a rule.
     outcomes: Vec<Outcome>,
     /// The number of the stage in which a rule was searched for last.
-    asked: usize,
+    requested: usize,
 }
 
 #[derive(Debug, Clone)]
@@ -227,7 +227,7 @@ impl Engine {
                 values: Vec::new(),
                 own: Vec::new(),
                 outcomes: Vec::new(),
-                asked: 0,
+                requested: 0,
             };
         };
         let later = chain
@@ -240,7 +240,7 @@ impl Engine {
             values: vec![0.0; self.inputs.len() + chain.most_reads()],
             own: vec![Outcome::default(); self.outputs.len()],
             outcomes: vec![Outcome::default(); self.outputs.len()],
-            asked: 0,
+            requested: 0,
         }
     }
 

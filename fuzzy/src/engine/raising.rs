@@ -108,10 +108,10 @@ impl Engine {
             first,
             later,
             values,
-            asked,
+            requested,
             ..
         } = scratch;
-        *asked = number;
+        *requested = number;
         let own_scratch = match number.checked_sub(1) {
             None => first,
             Some(later_number) => later.get_mut(later_number)?,
@@ -260,7 +260,7 @@ impl Scratch {
     /// Returns the degrees of the literals in the latest evaluation. They are empty if all rules are plain ANDs that a
     /// table looks up; in that case every proposition of a firing rule has a degree above 0.
     pub fn degrees(&self) -> &[f64] {
-        let stage = match self.asked.checked_sub(1) {
+        let stage = match self.requested.checked_sub(1) {
             None => Some(&self.first),
             Some(later) => self.later.get(later),
         };

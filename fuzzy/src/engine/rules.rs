@@ -85,21 +85,21 @@ impl FiringOperators {
 type PlainConjunction<'d> = (&'d [u32], &'d [Action]);
 
 /// The maximum number of cells of a dense table.
-const MOST_CELLS: usize = 1 << 16;
+const MAX_CELLS: usize = 1 << 16;
 /// The maximum number of cells per rule of a dense table.
-const MOST_CELLS_A_RULE: usize = 32;
+const MAX_CELLS_A_RULE: usize = 32;
 /// The maximum number of axes of a uniform table. With more, an evaluation would visit more than 64 cells, most of them
 /// with degree 0.
-const MOST_AXES: usize = 6;
+const MAX_AXES: usize = 6;
 /// The maximum number of actions per cell of a uniform table.
-const MOST_ACTIONS_A_CELL: usize = 2;
+const MAX_ACTIONS_A_CELL: usize = 2;
 /// The maximum number of steps for which evaluating all rules is faster than finding those that fire.
-const MOST_STEPS_OF_FEW_RULES: usize = 64;
+const MAX_STEPS_OF_FEW_RULES: usize = 64;
 
 /// Returns whether evaluating all rules is faster than finding those that fire.
 fn are_few(drafts: &[IndexedRule]) -> bool {
     let steps: usize = drafts.iter().map(|draft| draft.steps.len()).sum();
-    steps <= MOST_STEPS_OF_FEW_RULES
+    steps <= MAX_STEPS_OF_FEW_RULES
 }
 
 /// Returns whether a batch may evaluate all rules, each for several rows together. It may not if a firing strength is
@@ -231,7 +231,7 @@ impl OwnedTable {
                 any: if in_all { Dimension::NONE } else { input.count },
             });
             cells = cells.checked_mul(input.count as usize + usize::from(!in_all))?;
-            if cells > MOST_CELLS.min(MOST_CELLS_A_RULE * plain.len().max(8)) {
+            if cells > MAX_CELLS.min(MAX_CELLS_A_RULE * plain.len().max(8)) {
                 return None;
             }
             most_partial *= input.most_alive() + usize::from(!in_all);
@@ -294,7 +294,7 @@ impl OwnedTable {
         let cells = |ends: &[u32]| self.actions.get(ends[0] as usize..ends[1] as usize);
         let cells: Vec<&[Action]> = self.cells.windows(2).filter_map(cells).collect();
         let actions_a_cell = cells.iter().map(|actions| actions.len()).max()?.max(1);
-        if axes.len() > MOST_AXES || actions_a_cell > MOST_ACTIONS_A_CELL {
+        if axes.len() > MAX_AXES || actions_a_cell > MAX_ACTIONS_A_CELL {
             return None;
         }
         let mut actions = Vec::new();

@@ -15,11 +15,11 @@ pub(super) use plane::Plane;
 pub(super) use uniform::Uniform;
 
 /// The maximum number of intervals of an input, minus one.
-const MOST_CUTS: usize = 8;
+const MAX_CUTS: usize = 8;
 
 /// The limits between the intervals of an input, in ascending order, padded with infinity.
 #[derive(Debug, Clone)]
-struct Cuts([f64; MOST_CUTS]);
+struct Cuts([f64; MAX_CUTS]);
 
 impl Cuts {
     /// Collects the cuts of an axis; `None` if there are too many.
@@ -27,7 +27,7 @@ impl Cuts {
         let given = table
             .cuts
             .get(axis.first_cut as usize..axis.end_cut as usize)?;
-        let mut cuts = [f64::INFINITY; MOST_CUTS];
+        let mut cuts = [f64::INFINITY; MAX_CUTS];
         cuts.get_mut(..given.len())?.copy_from_slice(given);
         Some(Cuts(cuts))
     }

@@ -7,7 +7,7 @@ use alloc::{format, string::String, vec::Vec};
 
 use crate::{
     diagnostic::{Diagnostic, Findings, Severity},
-    model::{LEAST_STRENGTH, Model, Operators},
+    model::{MIN_STRENGTH, Model, Operators},
     tree::{Fields, Node, Value},
     validate::validate,
 };
@@ -212,7 +212,7 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
         outputs: outputs?,
         operators: operators.unwrap_or_default(),
         activation: activation.unwrap_or_default(),
-        least_strength: least_strength.unwrap_or(LEAST_STRENGTH),
+        least_strength: least_strength.unwrap_or(MIN_STRENGTH),
         blocks: Vec::new(),
         rules: Vec::new(),
         allow: Vec::new(),

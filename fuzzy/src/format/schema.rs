@@ -21,7 +21,7 @@ use nodes::{
 };
 
 use crate::{
-    model::{LEAST_STRENGTH, MembershipFunction, Role, ShapeForm},
+    model::{MIN_STRENGTH, MembershipFunction, Role, ShapeForm},
     tree::Node,
 };
 
@@ -64,7 +64,7 @@ pub fn schema() -> Node {
                 "A firing strength below this counts as 0; default: 1e-12",
                 [
                     ("type", Node::text("number")),
-                    ("minimum", Node::number(LEAST_STRENGTH)),
+                    ("minimum", Node::number(MIN_STRENGTH)),
                     ("maximum", Node::number(1.0)),
                 ],
             ),

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     model::{
-        Activation, LEAST_STRENGTH, MembershipFunction, Model, NoRuleFires, Output, SamplingRule,
+        Activation, MIN_STRENGTH, MembershipFunction, Model, NoRuleFires, Output, SamplingRule,
         TypeReduction, Variable, even_peaks,
     },
     tree::Node,
@@ -32,7 +32,7 @@ pub(super) fn model(model: &Model) -> Node {
     if model.activation != Activation::General {
         entries.push(("activation", blocks::write_activation(model.activation)));
     }
-    if model.least_strength != LEAST_STRENGTH {
+    if model.least_strength != MIN_STRENGTH {
         entries.push(("least_strength", Node::number(model.least_strength)));
     }
     if model.blocks.is_empty() {

@@ -149,8 +149,8 @@ fn mistakes_are_reported_with_their_position() {
         "x ² 2",
         "wind speed",
     ];
-    let told: Vec<String> = texts.into_iter().map(mistake).collect();
-    insta::assert_snapshot!(told.join("\n"));
+    let reported: Vec<String> = texts.into_iter().map(mistake).collect();
+    insta::assert_snapshot!(reported.join("\n"));
     let deep = "(".repeat(70) + "1";
     assert!(mistake(&deep).contains("nested deeper than 64"));
     let long = "1 + ".repeat(600) + "1";

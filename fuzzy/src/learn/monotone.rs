@@ -10,7 +10,7 @@ use super::{
 use crate::model::Variable;
 
 /// The maximum number of passes over the inputs. The means converge long before.
-const MOST_ROUNDS: usize = 1000;
+const MAX_ROUNDS: usize = 1000;
 /// The weight of a rule without samples, as a fraction of the largest weight of a sample. It is so small that the rule
 /// adapts to its neighbours.
 const NO_SAMPLES: f64 = 1e-6;
@@ -50,7 +50,7 @@ pub(super) fn enforce(
         }
     }
     let before = values.clone();
-    for _ in 0..MOST_ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         let mut changed = 0.0_f64;
         for axis in axes.iter().filter(|axis| axis.sign != 0.0) {
             for first in axis.starts(cells) {

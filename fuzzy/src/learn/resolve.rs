@@ -9,7 +9,7 @@ use crate::{
 };
 
 /// The maximum number of antecedents that are completed or made monotone.
-const MOST_COMPLETED: u64 = 1_000_000;
+const MAX_COMPLETED: u64 = 1_000_000;
 
 /// The consequent of an antecedent.
 pub(super) struct Decision {
@@ -56,7 +56,7 @@ pub(super) fn resolve(learner: &Learner) -> LearnResult {
             learned.left_out += 1;
         }
     }
-    if antecedents <= MOST_COMPLETED {
+    if antecedents <= MAX_COMPLETED {
         if learner.settings.complete && !decisions.is_empty() {
             learned.completed = complete(&shape, &mut decisions);
         }
@@ -65,7 +65,7 @@ pub(super) fn resolve(learner: &Learner) -> LearnResult {
         }
     }
     learned.missing = antecedents - decisions.len() as u64;
-    if learned.missing > 0 && antecedents <= MOST_COMPLETED {
+    if learned.missing > 0 && antecedents <= MAX_COMPLETED {
         learned.missing_antecedents = every_antecedent(&shape)
             .filter(|terms| !decisions.contains_key(terms.as_slice()))
             .filter_map(|terms| antecedent(learner, &terms))

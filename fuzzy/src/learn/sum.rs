@@ -5,7 +5,7 @@
 const LIMBS: usize = 8;
 
 /// The exponent of the smallest step.
-const LEAST_EXPONENT: i32 = -256;
+const MIN_EXPONENT: i32 = -256;
 
 /// A fixed-point sum of non-negative numbers; the least significant limb comes first.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -23,7 +23,7 @@ impl Sum {
             return;
         }
         let digits = (bits & ((1 << DIGITS) - 1)) | (1 << DIGITS);
-        let shift = exponent - BIAS - DIGITS - LEAST_EXPONENT;
+        let shift = exponent - BIAS - DIGITS - MIN_EXPONENT;
         let (digits, shift) = match u32::try_from(shift) {
             Ok(shift) => (digits, shift),
             Err(_) => (digits.checked_shr(shift.unsigned_abs()).unwrap_or(0), 0),
@@ -49,7 +49,7 @@ impl Sum {
         let low = top.saturating_sub(1);
         let limbs = self.0.iter().take(top + 1).skip(low).rev();
         let digits = limbs.fold(0_u128, |sum, limb| (sum << 64) | u128::from(*limb));
-        libm::scalbn(digits as f64, 64 * low as i32 + LEAST_EXPONENT)
+        libm::scalbn(digits as f64, 64 * low as i32 + MIN_EXPONENT)
     }
 }
 

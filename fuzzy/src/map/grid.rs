@@ -101,7 +101,7 @@ impl core::fmt::Display for GridError {
 impl core::error::Error for GridError {}
 
 /// The maximum number of cells of a decision map; they take 240 MB.
-pub(super) const MOST_CELLS: usize = 10_000_000;
+pub(super) const MAX_CELLS: usize = 10_000_000;
 
 impl Axis {
     /// Returns the coordinate of a point: `low + i (high - low) / (points - 1)`, and exactly `high` for the last one.

@@ -13,7 +13,7 @@ mod peaks;
 #[cfg(test)]
 mod tests;
 
-use grid::MOST_CELLS;
+use grid::MAX_CELLS;
 pub use grid::{Axis, FixedInput, Grid, GridError};
 pub use peaks::{changing, peaks};
 
@@ -164,10 +164,10 @@ impl DecisionMap {
                 got: output,
             });
         };
-        if grid.cells() > MOST_CELLS {
+        if grid.cells() > MAX_CELLS {
             return Err(EvaluateError::TooManyCells {
                 cells: grid.cells(),
-                most: MOST_CELLS,
+                most: MAX_CELLS,
             });
         }
         let none = Cell {

@@ -3,7 +3,7 @@
 use alloc::{boxed::Box, string::String, vec::Vec};
 
 use super::{
-    Activation, Aggregation, Block, Defuzzifier, LEAST_STRENGTH, MembershipFunction, Model,
+    Activation, Aggregation, Block, Defuzzifier, MIN_STRENGTH, MembershipFunction, Model,
     NoRuleFires, Operators, Output, Rule, Sampling, Term, TypeReduction, Variable, between_peaks,
     even_peaks,
 };
@@ -48,7 +48,7 @@ impl Model {
                 outputs: Vec::new(),
                 operators: Operators::default(),
                 activation: Activation::General,
-                least_strength: LEAST_STRENGTH,
+                least_strength: MIN_STRENGTH,
                 blocks: Vec::new(),
                 rules: Vec::new(),
                 allow: Vec::new(),

@@ -20,7 +20,7 @@ pub use crate::formula::Formula;
 pub use crate::shape::{MembershipError, MembershipFunction, Role};
 pub(crate) use crate::shape::{ShapeForm, ShapeParts};
 pub use crate::table::{
-    Activation, Aggregation, Comparison, Conjunction, Disjunction, Implication, LEAST_STRENGTH,
+    Activation, Aggregation, Comparison, Conjunction, Disjunction, Implication, MIN_STRENGTH,
 };
 pub use allowed::AllowedFinding;
 pub use blocks::Block;
@@ -59,7 +59,7 @@ pub struct Model {
     pub operators: Operators,
     /// The activation method, which selects the rules that fire. Not used if there are blocks.
     pub activation: Activation,
-    /// The least firing strength: a rule whose firing strength is below it does not fire. At least [`LEAST_STRENGTH`],
+    /// The least firing strength: a rule whose firing strength is below it does not fire. At least [`MIN_STRENGTH`],
     /// which is the default, and at most 1.
     pub least_strength: f64,
     /// The rule blocks; empty if all rules share `operators` and `activation`.

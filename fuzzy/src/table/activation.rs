@@ -4,7 +4,7 @@ use super::PartialConjunction;
 
 /// The default of the least firing strength; smaller strengths count as 0. It absorbs the rounding error of strengths
 /// that are exactly 0, such as that of `x IS a AND x IS not a` with `bounded_difference`.
-pub const LEAST_STRENGTH: f64 = 1e-12;
+pub const MIN_STRENGTH: f64 = 1e-12;
 
 /// An activation method: selects the rules of a block that fire and adjusts their strengths, given the weighted degrees
 /// of their antecedents. The methods are those of fuzzylite 7.

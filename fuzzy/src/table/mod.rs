@@ -77,7 +77,7 @@ mod rules;
 pub(crate) mod set;
 
 pub use actions::StrongestRule;
-pub use activation::{Activation, Comparison, LEAST_STRENGTH};
+pub use activation::{Activation, Comparison, MIN_STRENGTH};
 pub(crate) use arrays::{Arrays, arrays_from_fields};
 pub use arrays::{Table, arrays};
 pub use blocks::{Block, Method};

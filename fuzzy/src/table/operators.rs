@@ -2,7 +2,7 @@
 
 use core::hint::select_unpredictable;
 
-use super::LEAST_STRENGTH;
+use super::MIN_STRENGTH;
 
 /// The AND of two degrees: a t-norm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -183,7 +183,7 @@ impl Conjunction {
             // `a + b - 1` would lose digits of a small degree.
             Conjunction::BoundedDifference => larger(0.0, smaller(a, b) - (1.0 - larger(a, b))),
             Conjunction::Drastic => {
-                if 1.0 - larger(a, b) <= LEAST_STRENGTH {
+                if 1.0 - larger(a, b) <= MIN_STRENGTH {
                     smaller(a, b)
                 } else {
                     0.0
@@ -202,7 +202,7 @@ impl Conjunction {
             Conjunction::NilpotentMinimum => {
                 // `a + b` is 1 up to rounding if b is `1 - a`.
                 let (small, large) = (smaller(a, b), larger(a, b));
-                if large == 1.0 || small - (1.0 - large) > LEAST_STRENGTH {
+                if large == 1.0 || small - (1.0 - large) > MIN_STRENGTH {
                     small
                 } else {
                     0.0
@@ -221,7 +221,7 @@ impl Disjunction {
             Disjunction::ProbabilisticSum => probabilistic_sum(a, b),
             Disjunction::BoundedSum => smaller(1.0, a + b),
             Disjunction::Drastic => {
-                if smaller(a, b) <= LEAST_STRENGTH {
+                if smaller(a, b) <= MIN_STRENGTH {
                     larger(a, b)
                 } else {
                     1.0
@@ -238,7 +238,7 @@ impl Disjunction {
             }
             Disjunction::NilpotentMaximum => {
                 let (small, large) = (smaller(a, b), larger(a, b));
-                if small == 0.0 || (1.0 - large) - small > LEAST_STRENGTH {
+                if small == 0.0 || (1.0 - large) - small > MIN_STRENGTH {
                     large
                 } else {
                     1.0

@@ -6,7 +6,7 @@ use core::ops::Range;
 use super::{Validator, or};
 use crate::{
     diagnostic::duplicate,
-    model::{Activation, Implication, LEAST_STRENGTH, Model, concludes, document::Spans},
+    model::{Activation, Implication, MIN_STRENGTH, Model, concludes, document::Spans},
 };
 
 impl Validator<'_> {
@@ -18,16 +18,16 @@ impl Validator<'_> {
             activation,
             ..
         } = self.model;
-        if !(LEAST_STRENGTH..=1.0).contains(least_strength) {
+        if !(MIN_STRENGTH..=1.0).contains(least_strength) {
             let message =
-                format!("`least_strength` is {least_strength}, outside [{LEAST_STRENGTH:e}, 1]");
+                format!("`least_strength` is {least_strength}, outside [{MIN_STRENGTH:e}, 1]");
             let help = match *least_strength {
                 percent if percent > 1.0 && percent <= 100.0 => format!(
                     "a firing strength is from 0 to 1: for {percent} % write `{}`",
                     percent / 100.0
                 ),
-                small if small < LEAST_STRENGTH => format!(
-                    "strengths below {LEAST_STRENGTH:e} are rounding errors; fuzzylite uses 1e-6"
+                small if small < MIN_STRENGTH => format!(
+                    "strengths below {MIN_STRENGTH:e} are rounding errors; fuzzylite uses 1e-6"
                 ),
                 _ => "a firing strength is from 0 to 1".into(),
             };

@@ -126,8 +126,8 @@ impl<'m> Validator<'m> {
                     |sets| format!("write `{sets}` in place of `terms` and `defuzzifier`"),
                 );
                 let help = format!("{sets}, or let a linear function read it");
-                let mut told = self.findings.iter_mut();
-                match told.find(|finding| finding.message == message) {
+                let mut reported = self.findings.iter_mut();
+                match reported.find(|finding| finding.message == message) {
                     Some(first) if !name.span.is_empty() => {
                         *first = first.clone().related(name.span.clone(), "read here too");
                     }
@@ -185,9 +185,9 @@ impl<'m> Validator<'m> {
         (hedges, term): (&[Hedge], &Name),
     ) {
         // Terms that could not be parsed, and outputs without terms, are reported on their own.
-        let is_told = self.unread.contains(&variable.name.as_str())
+        let is_reported = self.unread.contains(&variable.name.as_str())
             || (kind == "output" && variable.terms.is_empty());
-        if is_told || variable.terms.iter().any(|t| t.name == term.text) {
+        if is_reported || variable.terms.iter().any(|t| t.name == term.text) {
             return;
         }
         let message = format!("{kind} `{}` has no term `{}`", variable.name, term.text);

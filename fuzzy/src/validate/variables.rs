@@ -3,7 +3,7 @@
 use alloc::{collections::BTreeSet, format, string::String, vec::Vec};
 use core::ops::Range;
 
-use super::{MOST_FINDINGS, Validator, or};
+use super::{MAX_FINDINGS, Validator, or};
 use crate::{
     defuzzify::is_empty,
     diagnostic::all_of,
@@ -19,7 +19,7 @@ use crate::{
 const NARROWEST_RANGE: f64 = 1e-250;
 
 /// The maximum number of samples. More samples do not improve accuracy, and evaluation would take too long.
-const MOST_SAMPLES: usize = 10_000_000;
+const MAX_SAMPLES: usize = 10_000_000;
 
 impl Validator<'_> {
     /// Validates the range, the membership functions and the heights of an input or output; `what` names it in
@@ -199,8 +199,8 @@ impl Validator<'_> {
             if samples < 2 {
                 let message = format!("{what} is integrated with {samples} samples");
                 self.error("wrong-parameter", here, message, "write 2 samples or more");
-            } else if samples > MOST_SAMPLES {
-                let message = format!("{samples} samples are more than {MOST_SAMPLES}");
+            } else if samples > MAX_SAMPLES {
+                let message = format!("{samples} samples are more than {MAX_SAMPLES}");
                 let help = "remove `samples`: then the result is exact";
                 self.error("wrong-parameter", here, message, help);
             }
@@ -356,7 +356,7 @@ impl Validator<'_> {
     ) {
         let mut seen = BTreeSet::new();
         for (i, (input, _)) in coefficients.iter().enumerate() {
-            if self.findings.len() >= MOST_FINDINGS {
+            if self.findings.len() >= MAX_FINDINGS {
                 return;
             }
             let here = spans.parameters.get(i).unwrap_or(&spans.name);

@@ -32,7 +32,7 @@ const DEEPEST: usize = 64;
 
 /// The maximum number of values that aliases may add to a document; more is an error. 16 bytes of text count as one
 /// value.
-const MOST_FROM_ALIASES: usize = 100_000;
+const MAX_FROM_ALIASES: usize = 100_000;
 
 /// Parses one YAML document to a tree. It is public for the crate `flagred`, which parses its profiles with it; not
 /// part of the API.
@@ -131,7 +131,7 @@ struct OpenCollection {
     end: usize,
     anchor: usize,
     content: Content,
-    /// The number of values in it, as [`MOST_FROM_ALIASES`] counts them.
+    /// The number of values in it, as [`MAX_FROM_ALIASES`] counts them.
     values: usize,
     /// The nesting depth of the values in it.
     depth: usize,
@@ -216,9 +216,9 @@ fn build(text: &str) -> Result<Node, Box<Diagnostic>> {
                 };
                 from_aliases += target.values;
                 let depth = target.depth + open.len();
-                if from_aliases > MOST_FROM_ALIASES || depth > DEEPEST {
+                if from_aliases > MAX_FROM_ALIASES || depth > DEEPEST {
                     let message = alloc::format!(
-                        "aliases expand to more than {MOST_FROM_ALIASES} values or {DEEPEST} levels"
+                        "aliases expand to more than {MAX_FROM_ALIASES} values or {DEEPEST} levels"
                     );
                     return Err(Box::new(
                         Diagnostic::error("yaml-too-large", bytes, message)

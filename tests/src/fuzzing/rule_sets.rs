@@ -6,7 +6,7 @@ use flagred_interchange::{Format, Losses};
 use fuzzy::Engine;
 
 use super::assert_harmless;
-use crate::board::{findings, told};
+use crate::board::{findings, reported};
 
 /// Any text in any format of other programs gives a model that is written in all of them and read again, or findings inside the
 /// text.
@@ -130,7 +130,11 @@ pub fn profile(bytes: &[u8]) {
             assert!(risk.risk_pct.is_finite(), "{text}");
         }
         if let Some(on_board) = &mut on_board {
-            assert_eq!(told(&on_board.push(&sample)), told(&update), "{text}");
+            assert_eq!(
+                reported(&on_board.push(&sample)),
+                reported(&update),
+                "{text}"
+            );
         }
     }
     let ended = findings(&monitor.finish());

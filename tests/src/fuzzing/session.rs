@@ -183,15 +183,15 @@ impl Link {
 
     /// Asserts that messages are harmless, and that there is no warning while only packets of the vehicle are accepted.
     fn look(&mut self, is_true: bool) {
-        let told = self.watch.told();
-        told.words.iter().for_each(|line| assert_harmless(line));
-        for packet in &told.packets {
+        let reported = self.watch.reported();
+        reported.words.iter().for_each(|line| assert_harmless(line));
+        for packet in &reported.packets {
             assert!(
                 matches!(next_packet(packet), PacketScan::Packet(_)),
                 "{packet:?}"
             );
         }
-        for line in &told.json {
+        for line in &reported.json {
             let event: serde_json::Value = serde_json::from_str(line).unwrap();
             let event = event["event"].as_str().unwrap();
             let alarms = [

@@ -84,9 +84,9 @@ fn reads<'m>(model: &'m Model, output: &'m Output) -> Vec<&'m str> {
     let of_output: Vec<&Rule> = model.rules.iter().filter(concludes).collect();
     for rule in model.rules.iter().filter(|rule| model.is_enabled(rule)) {
         // An activation method reads all rules of its block.
-        let asked = model.activation_of(rule) != Activation::General
+        let requested = model.activation_of(rule) != Activation::General
             && of_output.iter().any(|one| one.block == rule.block);
-        if asked || concludes(&rule) {
+        if requested || concludes(&rule) {
             rule.rule
                 .condition
                 .visit(&mut |proposition| names.push(&*proposition.variable.text));

@@ -20,7 +20,7 @@ const DIGITS: [&str; 12] = [
 const REACH: usize = 2;
 
 /// The minimum gain of a change.
-const LEAST_GAIN: f64 = 1e-5;
+const MIN_GAIN: f64 = 1e-5;
 
 const ROUNDS: usize = 6;
 
@@ -90,7 +90,7 @@ fn descend(mut votes: Votes, problem: &Problem, seed: u64) -> (Votes, f64) {
                     weights: a.weights + b.weights,
                 });
                 let score = problem.score(all);
-                if score > best + LEAST_GAIN {
+                if score > best + MIN_GAIN {
                     best = score;
                     votes.inputs[i] = changed;
                     sums[i] = own;

@@ -15,12 +15,12 @@ const SERVO_OUTPUT_RAW: f32 = 36.0;
 impl StandIn {
     pub(super) fn answer(&mut self, message: &MavMessage) {
         if !self.answers {
-            self.asked = true;
+            self.requested = true;
             return;
         }
         match message {
             MavMessage::PARAM_REQUEST_READ(request) => {
-                self.asked = true;
+                self.requested = true;
                 let name = request.param_id.to_str().unwrap();
                 let known = self.parameters.iter().find(|(known, _)| known == name);
                 if let Some((name, value)) = known {

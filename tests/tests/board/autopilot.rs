@@ -83,8 +83,8 @@ fn autopilot() -> Command {
             cc.args(flags.split_whitespace());
         }
         let compiled = cc.arg("-lm").arg("-o").arg(&binary).output().unwrap();
-        let told = String::from_utf8_lossy(&compiled.stderr);
-        assert!(compiled.status.success(), "{told}");
+        let reported = String::from_utf8_lossy(&compiled.stderr);
+        assert!(compiled.status.success(), "{reported}");
         (binary, folder)
     });
     Command::new(binary)

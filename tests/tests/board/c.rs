@@ -91,8 +91,8 @@ pub(crate) fn compiled(
     cc.arg(root.join(source)).arg("-o").arg(&binary);
     cc.arg(library().join("libflagred.a"));
     let compiled = cc.output().unwrap();
-    let told = String::from_utf8_lossy(&compiled.stderr);
-    assert!(compiled.status.success(), "{told}");
+    let reported = String::from_utf8_lossy(&compiled.stderr);
+    assert!(compiled.status.success(), "{reported}");
     (Command::new(binary), folder)
 }
 
@@ -365,8 +365,8 @@ fn the_module_for_px4_reports_the_risk_and_the_level() {
             .args(flags)
             .output();
         let output = output.unwrap();
-        let told = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{told}");
+        let reported = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{reported}");
     };
     let source = |file: &str| example.join(file).display().to_string();
     let object = folder.at("profile.o");

@@ -184,7 +184,7 @@ fn told_by_the_assessor(
 ) -> Vec<String> {
     let craft = Craft::new(vehicle.factors.len()).with_geometry(&vehicle.factors);
     let mut assessor = Assessor::new(estimator, craft, None).unwrap();
-    let mut told = Vec::new();
+    let mut reported = Vec::new();
     for record in records {
         let pwm = record.pwm.iter();
         let motors: Vec<f64> = pwm.map(|pwm| vehicle.effective(*pwm)).collect();
@@ -216,9 +216,9 @@ fn told_by_the_assessor(
             }
             (None, None) => String::new(),
         };
-        told.push(format!("{:.1} s {level}{about}", record.t_us as f64 / 1e6));
+        reported.push(format!("{:.1} s {level}{about}", record.t_us as f64 / 1e6));
     }
-    told
+    reported
 }
 
 /// Shortens a text such as `3.4 s, 4: FLAGRED: WARN risk 78 %, upper limit, motor 3` to `3.4 s WARN, limit, motor 3`.
@@ -265,15 +265,15 @@ fn the_script_reports_levels_and_causes_of_any_frame() {
             );
         }
         // Without yaw and thrust, opposite motors of a quadrotor differ equally from their trims: either may be named.
-        let either = |told: String| match name {
-            "QUAD/X" if !told.contains("limit") => told.replace("motor 3", "motor 4"),
-            _ => told,
+        let either = |reported: String| match name {
+            "QUAD/X" if !reported.contains("limit") => reported.replace("motor 3", "motor 4"),
+            _ => reported,
         };
         let found = run.texts.lines().skip(1).map(in_short).map(either);
         let found: Vec<String> = found.collect();
-        let told = told_by_the_assessor(&estimator, &vehicle, &records);
-        let told: Vec<String> = told.into_iter().map(either).collect();
-        assert_eq!(told, found, "{name}");
+        let reported = told_by_the_assessor(&estimator, &vehicle, &records);
+        let reported: Vec<String> = reported.into_iter().map(either).collect();
+        assert_eq!(reported, found, "{name}");
         assert!(found.len() > 5, "{found:?}");
         if name == "QUAD/X" {
             insta::assert_snapshot!(run.texts);
@@ -306,9 +306,11 @@ fn the_script_obeys_its_parameters_and_survives_an_error() {
     // The script runs to its end, so it does not block arming.
     let broken = run(&script, &vehicle, records, &["BROKEN=1"]);
     assert_eq!(broken.logged.len(), 0);
-    let told: Vec<&str> = broken.texts.lines().skip(1).collect();
-    let [told] = told[..] else { panic!("{told:?}") };
-    assert!(told.contains("FLAGRED failed: "), "{told}");
+    let reported: Vec<&str> = broken.texts.lines().skip(1).collect();
+    let [reported] = reported[..] else {
+        panic!("{reported:?}")
+    };
+    assert!(reported.contains("FLAGRED failed: "), "{reported}");
     let other = Vehicle {
         frame: (99, 0),
         ..Vehicle::named("QUAD/X")
@@ -545,11 +547,13 @@ fn the_script_evaluates_outputs_that_read_other_outputs() {
         );
         run.assert_within_budget(operators);
         let found: Vec<String> = run.texts.lines().skip(1).map(in_short).collect();
-        let told = told_by_the_assessor(&estimator, &vehicle, &records);
-        assert_eq!(told, found, "{operators}");
+        let reported = told_by_the_assessor(&estimator, &vehicle, &records);
+        assert_eq!(reported, found, "{operators}");
         // The cause of the risk is the cause of the strain that it reads.
         assert!(
-            found.iter().any(|told| told.contains("WARN, limit")),
+            found
+                .iter()
+                .any(|reported| reported.contains("WARN, limit")),
             "{found:?}"
         );
     }
@@ -606,7 +610,7 @@ fn unsupported_features_of_a_script_are_refused_with_alternatives() {
         "{std: motor_command, time_constant_s: 3}",
     ]
     .map(fed);
-    for (rules, profile, told) in [
+    for (rules, profile, reported) in [
         (
             curved.as_str(),
             &profile,
@@ -638,7 +642,7 @@ fn unsupported_features_of_a_script_are_refused_with_alternatives() {
             .unwrap();
         let text = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(3), "{text}");
-        assert!(text.contains(told) && text.contains("help: "), "{text}");
+        assert!(text.contains(reported) && text.contains("help: "), "{text}");
     }
 }
 
@@ -654,11 +658,11 @@ fn a_profile_that_exceeds_a_limit_of_the_autopilot_is_refused() {
         let sources: Vec<&str> = sources.iter().map(String::as_str).collect();
         super::profile_of(&folder, &sources).1
     };
-    let refused = |file: &str, told: &str| {
+    let refused = |file: &str, reported: &str| {
         let output = flagred().args(["export", "--lua", file]).output().unwrap();
         let text = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(3), "{text}");
-        assert!(text.contains(told) && text.contains("help: "), "{text}");
+        assert!(text.contains(reported) && text.contains("help: "), "{text}");
         assert!(output.stdout.is_empty());
     };
     refused(

@@ -18,7 +18,9 @@ use flagred::{
 };
 use flagred_tests::{
     Folder,
-    board::{Moment, PROFILES, estimator, findings, geometry, logs, moment, moments, points, told},
+    board::{
+        Moment, PROFILES, estimator, findings, geometry, logs, moment, moments, points, reported,
+    },
     flagred,
 };
 
@@ -65,7 +67,7 @@ fn by_the_monitor(estimator: &Estimator, geometry: &[Factors], flight: &[Moment]
     .unwrap();
     let output = flight
         .iter()
-        .map(|moment| told(&monitor.push(&moment.sample())));
+        .map(|moment| reported(&monitor.push(&moment.sample())));
     let mut output: Vec<String> = output.collect();
     output.push(findings(&monitor.finish()));
     output
@@ -78,7 +80,7 @@ fn on_board(plan: &Plan<'_>, geometry: &[Factors], flight: &[Moment]) -> Vec<Str
         }
         let output = flight
             .iter()
-            .map(|moment| told(&monitor.push(&moment.sample())));
+            .map(|moment| reported(&monitor.push(&moment.sample())));
         let mut output: Vec<String> = output.collect();
         output.push(findings(&monitor.finish()));
         output
@@ -331,7 +333,7 @@ fn a_profile_without_motors_is_the_same_in_borrowed_memory_and_in_c() {
     assert_same(&expected, &found, "no motors in C");
     // FAIL has the code 3.
     assert!(
-        expected.iter().any(|told| told.contains(" [3 ")),
+        expected.iter().any(|reported| reported.contains(" [3 ")),
         "{expected:?}"
     );
 }
@@ -399,7 +401,7 @@ fn an_ambiguous_geometry_is_refused_and_changes_nothing() {
         }
         let output = flight
             .iter()
-            .map(|moment| told(&monitor.push(&moment.sample())));
+            .map(|moment| reported(&monitor.push(&moment.sample())));
         let mut output: Vec<String> = output.collect();
         output.push(findings(&monitor.finish()));
         assert_same(
@@ -451,12 +453,12 @@ fn outputs_without_a_closed_form_are_refused_with_alternatives() {
         .args(["export", "--c", &folder.file("odd.yaml", profile)])
         .output()
         .unwrap();
-    let told = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(3), "{told}");
+    let reported = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(3), "{reported}");
     assert!(
-        told.contains("output `risk` has no closed form")
-            && told.contains("help: the defuzzifiers have a closed form with"),
-        "{told}"
+        reported.contains("output `risk` has no closed form")
+            && reported.contains("help: the defuzzifiers have a closed form with"),
+        "{reported}"
     );
 }
 

@@ -77,7 +77,7 @@ fn points(model: &Model) -> Vec<Vec<f64>> {
 }
 
 /// Outcomes as text, bit for bit, in the format of `tests/c/evaluate.c`.
-fn told(outcomes: &[Outcome]) -> String {
+fn reported(outcomes: &[Outcome]) -> String {
     let bits = |value: f64| match value.is_nan() {
         true => "nan".to_owned(),
         false => format!("{:016x}", value.to_bits()),
@@ -107,7 +107,7 @@ fn by_the_engine(engine: &Engine, points: &[Vec<f64>]) -> Vec<String> {
         let mut outcomes = vec![Outcome::default(); outputs];
         // If a required output has no value, the engine returns an error; here only the states of the outcomes are compared.
         let _ = engine.evaluate_with(&mut scratch, point, &mut outcomes);
-        told(&outcomes)
+        reported(&outcomes)
     });
     outcomes.collect()
 }
@@ -130,7 +130,7 @@ fn lent(rules: &Rules<'_>, points: &[Vec<f64>]) -> Vec<String> {
     assert_eq!(evaluator.evaluate(&vec![0.0; rules.inputs() + 1]), None);
     let outcomes = points
         .iter()
-        .map(|point| told(evaluator.evaluate(point).unwrap()));
+        .map(|point| reported(evaluator.evaluate(point).unwrap()));
     outcomes.collect()
 }
 
@@ -215,7 +215,7 @@ fn exported_rust_agrees_with_the_engine() {
         let points = points(&model);
         let output = points
             .iter()
-            .map(|point| told(&evaluate(point[..].try_into().unwrap())));
+            .map(|point| reported(&evaluate(point[..].try_into().unwrap())));
         assert_same(
             &by_the_engine(&engine, &points),
             &output.collect::<Vec<_>>(),
@@ -286,22 +286,23 @@ fn rule_sets_that_keep_previous_values_are_refused_with_help() {
         )
     };
     for option in ["--rust", "--c"] {
-        let (code, told) = refused("when_no_rule_fires: previous", &[option]);
-        assert_eq!(code, Some(3), "{told}");
+        let (code, reported) = refused("when_no_rule_fires: previous", &[option]);
+        assert_eq!(code, Some(3), "{reported}");
         assert!(
-            told.contains("output `tip` keeps its previous value") && told.contains("help: "),
-            "{told}"
+            reported.contains("output `tip` keeps its previous value")
+                && reported.contains("help: "),
+            "{reported}"
         );
-        let (code, told) = refused("samples: {midpoint: 100}", &[option]);
-        assert_eq!(code, Some(3), "{told}");
+        let (code, reported) = refused("samples: {midpoint: 100}", &[option]);
+        assert_eq!(code, Some(3), "{reported}");
         assert!(
-            told.contains("no closed form") && told.contains("`--lossy` drops `samples`"),
-            "{told}"
+            reported.contains("no closed form") && reported.contains("`--lossy` drops `samples`"),
+            "{reported}"
         );
-        let (code, told) = refused("samples: {midpoint: 100}", &[option, "--lossy"]);
-        assert_eq!(code, Some(0), "{told}");
+        let (code, reported) = refused("samples: {midpoint: 100}", &[option, "--lossy"]);
+        assert_eq!(code, Some(0), "{reported}");
         assert_eq!(
-            told,
+            reported,
             "warning: output `tip` is computed exactly, not from 100 samples\n"
         );
     }
@@ -322,11 +323,11 @@ fn an_evaluation_that_takes_too_much_stack_is_refused_in_rust_and_uses_borrowed_
     let file = folder.file("many.yaml", rules);
     let export = |option: &str| flagred().args(["export", option, &file]).output().unwrap();
     let refused = export("--rust");
-    let told = String::from_utf8(refused.stderr).unwrap();
-    assert_eq!(refused.status.code(), Some(3), "{told}");
+    let reported = String::from_utf8(refused.stderr).unwrap();
+    assert_eq!(refused.status.code(), Some(3), "{reported}");
     assert!(
-        told.contains("too much for a stack") && told.contains("help: in C"),
-        "{told}"
+        reported.contains("too much for a stack") && reported.contains("help: in C"),
+        "{reported}"
     );
     assert!(export("--c").status.success());
 }

@@ -68,10 +68,10 @@ fn ask(mut program: Command, script: &str, folder: &Folder, expected: &str) {
         .join("peer")
         .join(script);
     let output = program.arg(script).arg(folder.path()).output().unwrap();
-    let told = String::from_utf8_lossy(&output.stdout);
+    let reported = String::from_utf8_lossy(&output.stdout);
     let errors = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{told}{errors}");
-    assert!(told.contains(expected), "{told}");
+    assert!(output.status.success(), "{reported}{errors}");
+    assert!(reported.contains(expected), "{reported}");
 }
 
 /// The Python that `FLAGRED_PYTHON` names.

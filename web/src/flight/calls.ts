@@ -52,7 +52,7 @@ const profiles = new Map<string, Profile>();
 const assessments = new Map<number, { key: string; assessment: Assessment }>();
 
 /** The maximum number of compiled profiles that are kept. */
-const MOST_PROFILES = 8;
+const MAX_PROFILES = 8;
 
 const keyOf = ({ name, text, rules }: ProfileSource) => JSON.stringify([text ?? name, rules]);
 
@@ -63,7 +63,7 @@ function profileOf(source: ProfileSource): Profile {
   const { name, text, rules } = source;
   const made = text === undefined ? Profile.named(name, rules) : Profile.fromText(name, text, rules);
   for (const [oldest, profile] of profiles) {
-    if (profiles.size < MOST_PROFILES) break;
+    if (profiles.size < MAX_PROFILES) break;
     profile.free();
     profiles.delete(oldest);
   }

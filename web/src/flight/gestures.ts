@@ -10,7 +10,7 @@ export interface Gestures {
 }
 
 /** The minimum movement of a selection, in pixels. */
-const LEAST_PX = 8;
+const MIN_PX = 8;
 
 /**
  * Handles the pointers on all charts in an element. `areaOf` returns the area of the chart in which an event
@@ -63,7 +63,7 @@ export function gestures(element: HTMLElement, areaOf: (event: Event) => HTMLEle
     if (one && other) {
       down.clear();
       pinch(one, other);
-    } else if (event.pointerType === 'mouse' && Math.abs(held.now - held.from) * width >= LEAST_PX) {
+    } else if (event.pointerType === 'mouse' && Math.abs(held.now - held.from) * width >= MIN_PX) {
       on.zoom(Math.min(held.from, held.now), Math.max(held.from, held.now));
     }
   };

@@ -12,7 +12,7 @@ export interface MomentPanel {
 }
 
 /** The maximum number of rules in the list; the others hardly matter. */
-const MOST_RULES = 8;
+const MAX_RULES = 8;
 
 const percent = (value: number | null | undefined) => (value === null || value === undefined ? 'unknown' : `${said(value)} %`);
 
@@ -65,7 +65,7 @@ function facts({ step, filled_from, clamped }: Moment): Child {
 function rules({ rules: fired, step }: Moment): Child {
   if (fired.length === 0) return step && h('p', { class: 'soft' }, 'No rule fires.');
   const list = h('ol', { class: 'fired' });
-  for (const { rule, text, strength } of fired.slice(0, MOST_RULES)) {
+  for (const { rule, text, strength } of fired.slice(0, MAX_RULES)) {
     const meter = h('span', { class: 'bar' });
     meter.style.width = `${100 * strength}%`;
     list.append(
@@ -78,7 +78,7 @@ function rules({ rules: fired, step }: Moment): Child {
       ),
     );
   }
-  const more = fired.length - MOST_RULES;
+  const more = fired.length - MAX_RULES;
   return h(
     'div',
     {},

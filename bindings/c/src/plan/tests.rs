@@ -307,7 +307,7 @@ fn estimators() -> Vec<Estimator> {
 
 const MOTORS: usize = 4;
 /// An upper bound for the memory of the plans in these tests.
-const MOST_BYTES: usize = 1 << 21;
+const MAX_BYTES: usize = 1 << 21;
 
 fn start(plan: &Plan, memory: &mut [u128], size: usize) -> (i32, *mut CMonitor) {
     let mut monitor = ptr::null_mut();
@@ -355,7 +355,7 @@ fn fly(monitor: *mut CMonitor, plan: &Plan, random: &mut Random) {
 
 #[test]
 fn a_damaged_plan_is_refused_or_can_be_pushed() {
-    let mut memory = vec![0_u128; MOST_BYTES / 16];
+    let mut memory = vec![0_u128; MAX_BYTES / 16];
     let mut random = Random(20_261_122);
     let (mut accepted, mut refused) = (0, 0);
     let mut kinds = [0; 3];
@@ -378,14 +378,14 @@ fn a_damaged_plan_is_refused_or_can_be_pushed() {
             let plan = &*copied.plan;
             // SAFETY: the arrays have the stated lengths.
             let bytes = unsafe { flagred_memory_size(plan, MOTORS) };
-            let (status, monitor) = start(plan, &mut memory, MOST_BYTES);
+            let (status, monitor) = start(plan, &mut memory, MAX_BYTES);
             assert!(round > 0 || status == Status::Ok as i32, "{status}");
             if status != Status::Ok as i32 {
                 refused += 1;
                 continue;
             }
             accepted += 1;
-            assert!(bytes > 0 && bytes <= MOST_BYTES);
+            assert!(bytes > 0 && bytes <= MAX_BYTES);
             fly(monitor, plan, &mut random);
             for (size, expected) in [(bytes, Status::Ok), (bytes - 1, Status::MemorySize)] {
                 assert_eq!(start(plan, &mut memory, size).0, expected as i32);
@@ -406,7 +406,7 @@ const ROUNDS: usize = 3000;
 fn sizes_do_not_wrap() {
     let estimator = shipped::flagred_paper();
     let mut copied = copy(&estimator.plan().unwrap());
-    let mut memory = vec![0_u128; MOST_BYTES / 16];
+    let mut memory = vec![0_u128; MAX_BYTES / 16];
     let mut monitor = ptr::null_mut();
     let place = memory.as_mut_ptr().cast();
     for motors in [usize::MAX, usize::MAX / 8, isize::MAX as usize] {
@@ -415,10 +415,10 @@ fn sizes_do_not_wrap() {
             let bytes = flagred_memory_size(&*copied.plan, motors);
             let limits = ptr::null();
             let plan = &*copied.plan;
-            let status = flagred_start(plan, motors, limits, place, MOST_BYTES, &mut monitor);
+            let status = flagred_start(plan, motors, limits, place, MAX_BYTES, &mut monitor);
             (bytes, status)
         };
-        assert!(bytes == 0 || bytes > MOST_BYTES, "{motors} motors: {bytes}");
+        assert!(bytes == 0 || bytes > MAX_BYTES, "{motors} motors: {bytes}");
         assert_eq!(status, Status::MemorySize as i32);
     }
     for count in [usize::MAX, usize::MAX / 4] {

@@ -49,11 +49,11 @@ struct Errors<'a> {
     mean: Option<f64>,
     largest: Option<f64>,
     /// The rows with the largest errors, the largest first.
-    worst: Vec<Worst>,
+    worst: Vec<WorstRow>,
 }
 
 #[derive(Serialize)]
-struct Worst {
+struct WorstRow {
     line: u64,
     point: Vec<f64>,
     measured: f64,
@@ -62,7 +62,7 @@ struct Worst {
 
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
-struct Made {
+struct FittedRules {
     text: String,
     /// A sentence that describes the result.
     words: String,
@@ -98,10 +98,10 @@ impl DataTable {
             .iter()
             .skip(target)
             .step_by(model.outputs.len().max(1));
-        let mut known: Vec<Worst> = Vec::new();
+        let mut known: Vec<WorstRow> = Vec::new();
         for ((row, line), outcome) in rows.values.iter().zip(&rows.lines).zip(values) {
             if let (Some(computed), Some((measured, point))) = (outcome.value(), row.split_last()) {
-                known.push(Worst {
+                known.push(WorstRow {
                     line: *line,
                     point: point.to_vec(),
                     measured: *measured,
@@ -109,7 +109,7 @@ impl DataTable {
                 });
             }
         }
-        let error = |row: &Worst| row.computed - row.measured;
+        let error = |row: &WorstRow| row.computed - row.measured;
         let count = known.len() as f64;
         let mean = |of: &dyn Fn(f64) -> f64| {
             (count > 0.0).then(|| known.iter().map(|row| of(error(row))).sum::<f64>() / count)
@@ -200,7 +200,7 @@ impl DataTable {
         let losses = (tuned.before, tuned.after);
         let text = self.tuned(text, &tuned.model, rows.values.len(), losses, moved.clone())?;
         let [before, after] = [tuned.before, tuned.after].map(short);
-        json(&Made {
+        json(&FittedRules {
             text,
             words: format!("RMS error {before} before, {after} after tuning"),
             details: moved,
@@ -253,32 +253,32 @@ impl DataTable {
         let text =
             provenance::rule_set(text, made, step).map_err(|findings| failure(findings, None))?;
         let mut details = Vec::new();
-        let mut told = |count: u64, one: &str, many: &str| {
+        let mut reported = |count: u64, one: &str, many: &str| {
             if count > 0 {
                 details.push(format!("{count} {}", if count == 1 { one } else { many }));
             }
         };
-        told(
+        reported(
             learned.conflicts,
             "combination of terms has rows that disagree",
             "combinations of terms have rows that disagree",
         );
-        told(
+        reported(
             learned.missing,
             "combination of terms has no rule",
             "combinations of terms have no rule",
         );
-        told(
+        reported(
             learned.completed,
             "rule was completed from its neighbours",
             "rules were completed from their neighbours",
         );
-        told(
+        reported(
             outside as u64,
             "row has a value outside the range of its variable",
             "rows have values outside the ranges of their variables",
         );
-        json(&Made {
+        json(&FittedRules {
             text,
             words: format!("{count} rules learned from {} rows", learned.samples),
             details,

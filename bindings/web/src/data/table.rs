@@ -3,7 +3,7 @@
 use fuzzy::{diagnostic::suggest, model::Variable};
 
 /// The maximum number of cells of a table.
-const MOST_CELLS: usize = 5_000_000;
+const MAX_CELLS: usize = 5_000_000;
 
 /// A message, and advice on what to do.
 type Refusal = (String, String);
@@ -55,9 +55,9 @@ impl Table {
         for record in reader.records() {
             let record = record.map_err(broken)?;
             cells += record.len();
-            if cells > MOST_CELLS {
+            if cells > MAX_CELLS {
                 return Err((
-                    format!("more than {MOST_CELLS} cells"),
+                    format!("more than {MAX_CELLS} cells"),
                     "use fewer rows or columns".into(),
                 ));
             }

@@ -9,7 +9,7 @@ use super::json;
 use crate::failure::failure;
 
 #[derive(Serialize)]
-struct Exchanged {
+struct Conversion {
     text: String,
     /// The format that was read or written, such as `FIS`.
     format: &'static str,
@@ -22,7 +22,7 @@ struct Exchanged {
 #[wasm_bindgen(js_name = importRules)]
 pub fn import(text: &str, lossy: bool) -> Result<String, JsError> {
     let Some(format) = Format::of(text) else {
-        return json(&Exchanged {
+        return json(&Conversion {
             text: text.into(),
             format: "YAML",
             notes: Vec::new(),
@@ -30,7 +30,7 @@ pub fn import(text: &str, lossy: bool) -> Result<String, JsError> {
     };
     let read = flagred_interchange::read(text, format, losses(lossy)).map_err(refused)?;
     read.validate(text).map_err(refused)?;
-    json(&Exchanged {
+    json(&Conversion {
         text: fuzzy::yaml::to_string(&read.model),
         format: format.name(),
         notes: notes(&read.warnings),
@@ -49,7 +49,7 @@ pub fn export(text: &str, format: &str, lossy: bool) -> Result<String, JsError> 
     })?;
     let document = flagred_interchange::document(text).map_err(refused)?;
     match flagred_interchange::write(&document.model, known, losses(lossy)) {
-        Ok(written) => json(&Exchanged {
+        Ok(written) => json(&Conversion {
             notes: notes(&written.findings),
             text: written.text,
             format: known.name(),
@@ -70,8 +70,8 @@ fn losses(lossy: bool) -> Losses {
 }
 
 fn notes(findings: &Findings) -> Vec<String> {
-    let told = findings.0.iter();
-    told.map(ToString::to_string).collect()
+    let reported = findings.0.iter();
+    reported.map(ToString::to_string).collect()
 }
 
 /// Converts findings that make a text unusable to an error.

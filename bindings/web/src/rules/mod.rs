@@ -9,7 +9,7 @@ pub mod text;
 pub mod viewer;
 
 use flagred::shipped;
-use flagred_authoring::{answers::Checked, starter};
+use flagred_authoring::{answers::CheckDocument, starter};
 use fuzzy::{
     check,
     drawing::{distinct, distinct_line, viridis},
@@ -26,7 +26,7 @@ pub fn check_rules(text: &str, file: &str) -> Result<String, JsError> {
     if document.is_profile() {
         let name = document.profile().map(|profile| profile.name.as_str());
         let alone = document.alone();
-        return json(&Checked::profile(
+        return json(&CheckDocument::profile(
             file,
             name,
             &document.findings().0,
@@ -36,12 +36,12 @@ pub fn check_rules(text: &str, file: &str) -> Result<String, JsError> {
     let examined = flagred_authoring::examine(document.source(), &check::Options::default());
     let examined =
         examined.map_err(|finding| failure(&finding.message, finding.help.as_deref()))?;
-    json(&Checked::rules(file, &examined))
+    json(&CheckDocument::rules(file, &examined))
 }
 
 /// A template text.
 #[derive(Serialize)]
-struct Start {
+struct Template {
     name: String,
     about: &'static str,
     text: String,
@@ -50,7 +50,7 @@ struct Start {
 /// The template texts as a JSON array: the template of `flagred new`, the shipped rule sets and profiles, and examples.
 #[wasm_bindgen(js_name = startingPoints)]
 pub fn starting_points() -> Result<String, JsError> {
-    let start = |name: String, about, text: &str| Start {
+    let start = |name: String, about, text: &str| Template {
         name,
         about,
         text: text.to_owned(),

@@ -66,7 +66,7 @@ impl View {
 
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
-struct Named<'a> {
+struct VariableOverview<'a> {
     name: &'a str,
     description: Option<&'a str>,
     unit: Option<&'a str>,
@@ -76,10 +76,10 @@ struct Named<'a> {
     shown: [f64; 2],
 }
 
-impl<'a> Named<'a> {
-    fn new(variable: &'a Variable) -> Named<'a> {
+impl<'a> VariableOverview<'a> {
+    fn new(variable: &'a Variable) -> VariableOverview<'a> {
         let shown = slice::shown(variable);
-        Named {
+        VariableOverview {
             name: &variable.name,
             description: variable.description.as_deref(),
             unit: variable.unit.as_deref(),
@@ -91,10 +91,10 @@ impl<'a> Named<'a> {
 }
 
 #[derive(Serialize)]
-struct About<'a> {
+struct RuleSetOverview<'a> {
     name: &'a str,
-    inputs: Vec<Named<'a>>,
-    outputs: Vec<Named<'a>>,
+    inputs: Vec<VariableOverview<'a>>,
+    outputs: Vec<VariableOverview<'a>>,
     rules: Vec<String>,
     /// The index of the output that a profile uses as its risk.
     output: usize,
@@ -132,10 +132,10 @@ impl RuleSet {
     pub fn about(&self) -> Result<String, JsError> {
         let model = self.model();
         let outputs = model.outputs.iter().map(|output| &output.variable);
-        json(&About {
+        json(&RuleSetOverview {
             name: &model.name,
-            inputs: model.inputs.iter().map(Named::new).collect(),
-            outputs: outputs.map(Named::new).collect(),
+            inputs: model.inputs.iter().map(VariableOverview::new).collect(),
+            outputs: outputs.map(VariableOverview::new).collect(),
             rules: model
                 .rules
                 .iter()

@@ -136,8 +136,8 @@ impl RuleText {
         let outputs =
             outputs.map(|output| (&output.variable, Some(takes_numbers(output.defuzzifier))));
         let drawn = inputs.chain(outputs).enumerate();
-        let drawn =
-            drawn.map(|(i, (variable, output))| Drawn::new(&self.document, i, variable, output));
+        let drawn = drawn
+            .map(|(i, (variable, output))| DrawnVariable::new(&self.document, i, variable, output));
         json(&drawn.collect::<Vec<_>>())
     }
 
@@ -229,7 +229,7 @@ pub(super) fn edits(text: &str, edits: Vec<Edit>) -> Result<String, JsError> {
 /// A variable to draw.
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
-struct Drawn<'a> {
+struct DrawnVariable<'a> {
     name: &'a str,
     description: Option<&'a str>,
     unit: Option<&'a str>,
@@ -265,7 +265,7 @@ struct Handle {
     moves_degree: bool,
 }
 
-impl<'a> Drawn<'a> {
+impl<'a> DrawnVariable<'a> {
     /// Creates a variable to draw. `output` is `None` for an input. For an output, it contains whether the terms are
     /// numbers.
     fn new(
@@ -303,7 +303,7 @@ impl<'a> Drawn<'a> {
                 handles: handles.collect(),
             }
         });
-        Drawn {
+        DrawnVariable {
             name: &variable.name,
             description: variable.description.as_deref(),
             unit: variable.unit.as_deref(),

@@ -14,7 +14,7 @@ use super::{json, set::RuleSet};
 const SAMPLES: usize = 100;
 
 #[derive(Serialize)]
-struct Viewed<'a> {
+struct RuleView<'a> {
     /// Whether a consequent is scaled by the firing strength, rather than cut.
     scales: bool,
     rules: Vec<Row<'a>>,
@@ -63,7 +63,7 @@ impl RuleSet {
                 conclusions: conclusions.collect(),
             }
         });
-        json(&Viewed {
+        json(&RuleView {
             scales: model.operators.implication == Conjunction::Product,
             rules: rows.collect(),
         })

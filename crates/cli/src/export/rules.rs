@@ -22,7 +22,7 @@ use crate::{
 };
 
 /// The maximum stack of an evaluation; more would overflow the stack of many threads.
-const MOST_STACK_BYTES: usize = 1 << 20;
+const MAX_STACK_BYTES: usize = 1 << 20;
 
 /// Writes a rule set in Rust or C.
 pub(super) fn export(arguments: &Arguments, source: &Source) -> Result<Exit, Failure> {
@@ -66,7 +66,7 @@ pub(super) fn code(
         Failure::unreadable(format!("`{name}`: {refused}")).help(help)
     })?;
     let stack = stack_bytes(&rules);
-    if language == Language::Rust && stack > MOST_STACK_BYTES {
+    if language == Language::Rust && stack > MAX_STACK_BYTES {
         return Err(Failure::unreadable(format!(
             "`{name}`: an evaluation takes {stack} bytes, which is too much for a stack"
         ))

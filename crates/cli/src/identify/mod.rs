@@ -9,7 +9,7 @@ use std::{io::Write as _, ops::ControlFlow, path::PathBuf};
 use flagred_tuning::{
     Data, Loss, TuneError,
     identify::{
-        Antecedents, Consequents, Identification, IdentifyResult, IdentifyValidation, MOST_TERMS,
+        Antecedents, Consequents, Identification, IdentifyResult, IdentifyValidation, MAX_TERMS,
         check_columns, cross_validate, identify,
     },
 };
@@ -54,7 +54,7 @@ pub(crate) struct Arguments {
     max_inputs: u32,
 
     /// Maximum number of terms of an input
-    #[arg(long, default_value_t = 5, value_name = "COUNT", value_parser = whole(2, MOST_TERMS as u32))]
+    #[arg(long, default_value_t = 5, value_name = "COUNT", value_parser = whole(2, MAX_TERMS as u32))]
     max_terms: u32,
 
     /// Maximum number of rules

@@ -61,13 +61,13 @@ fn vehicle(flight: &Flight) -> String {
         text.push_str(", ");
         text.push_str(part);
     }
-    let told = vehicle
+    let reported = vehicle
         .firmware
         .as_ref()
         .is_some_and(|firmware| vehicle.source.contains(firmware));
     match vehicle.source.as_str() {
         "" => text,
-        _ if told => text,
+        _ if reported => text,
         source => format!("{text} ({source})"),
     }
 }

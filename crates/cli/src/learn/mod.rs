@@ -218,7 +218,7 @@ fn monotone_help(outcome: &LearnOutcome) -> Option<&'static str> {
 }
 
 /// Maximum number of map cells that `coverage` evaluates: enough for 13 inputs.
-const MOST_CELLS: usize = 2_000_000;
+const MAX_CELLS: usize = 2_000_000;
 
 fn unusable(error: impl std::fmt::Display) -> Failure {
     Failure::unusable("the learned rules cannot be used", &error)
@@ -232,7 +232,7 @@ fn coverage(model: &Model, gap: &GapSettings) -> Result<Option<(f64, f64)>, Fail
     let inputs = u32::try_from(model.inputs.len()).unwrap_or(u32::MAX);
     if points
         .checked_pow(inputs)
-        .is_none_or(|cells| cells > MOST_CELLS)
+        .is_none_or(|cells| cells > MAX_CELLS)
     {
         return Ok(None);
     }

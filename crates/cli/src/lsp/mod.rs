@@ -172,13 +172,13 @@ impl Server {
             Some((document, encoding.offset(document.text(), there.position)))
         };
         let done = match request.method.as_str() {
-            "textDocument/completion" => reply(request, |asked: lsp::CompletionParams| {
-                let (document, offset) = at(&asked.text_document_position_params)?;
+            "textDocument/completion" => reply(request, |requested: lsp::CompletionParams| {
+                let (document, offset) = at(&requested.text_document_position_params)?;
                 let found = completion::at(document, offset).into_iter();
                 Some(found.map(item).collect::<Vec<_>>())
             }),
-            "textDocument/hover" => reply(request, |asked: lsp::HoverParams| {
-                let (document, offset) = at(&asked.text_document_position_params)?;
+            "textDocument/hover" => reply(request, |requested: lsp::HoverParams| {
+                let (document, offset) = at(&requested.text_document_position_params)?;
                 let meant = names::describe(document, offset)?;
                 let markdown = lsp::MarkupContent::new(lsp::MarkupKind::Markdown, meant.markdown);
                 let range = encoding.range(document.text(), &meant.span);
@@ -187,8 +187,8 @@ impl Server {
                     range: Some(range),
                 })
             }),
-            "textDocument/definition" => reply(request, |asked: lsp::DefinitionParams| {
-                let there = &asked.text_document_position_params;
+            "textDocument/definition" => reply(request, |requested: lsp::DefinitionParams| {
+                let there = &requested.text_document_position_params;
                 let (document, offset) = at(there)?;
                 let span = names::definition(document, offset)?;
                 let range = encoding.range(document.text(), &span);
@@ -198,8 +198,8 @@ impl Server {
                 })
             }),
             "textDocument/rename" => {
-                let asked: lsp::RenameParams = match serde_json::from_value(request.params) {
-                    Ok(asked) => asked,
+                let requested: lsp::RenameParams = match serde_json::from_value(request.params) {
+                    Ok(requested) => requested,
                     Err(error) => {
                         return Response::new_err(
                             id,
@@ -208,16 +208,16 @@ impl Server {
                         );
                     }
                 };
-                let there = &asked.text_document_position_params;
+                let there = &requested.text_document_position_params;
                 let Some((document, offset)) = at(there) else {
                     return Response::new_ok(id, None::<lsp::WorkspaceEdit>);
                 };
-                match names::rename(document, offset, &asked.new_name) {
+                match names::rename(document, offset, &requested.new_name) {
                     Err(why) => return Response::new_err(id, ErrorCode::RequestFailed as i32, why),
                     Ok(spans) => {
                         let edit = |span| lsp::TextEdit {
                             range: encoding.range(document.text(), span),
-                            new_text: asked.new_name.clone(),
+                            new_text: requested.new_name.clone(),
                         };
                         let edits = spans.iter().map(edit).collect();
                         let changes = HashMap::from([(there.text_document.uri.clone(), edits)]);
@@ -229,15 +229,17 @@ impl Server {
                     }
                 }
             }
-            "textDocument/formatting" => reply(request, |asked: lsp::DocumentFormattingParams| {
-                let document = self.open.get(&asked.text_document.uri)?;
-                let formatted = layout::formatted(document.text()).ok()?;
-                let range = encoding.range(document.text(), &(0..document.text().len()));
-                Some(vec![lsp::TextEdit {
-                    range,
-                    new_text: formatted,
-                }])
-            }),
+            "textDocument/formatting" => {
+                reply(request, |requested: lsp::DocumentFormattingParams| {
+                    let document = self.open.get(&requested.text_document.uri)?;
+                    let formatted = layout::formatted(document.text()).ok()?;
+                    let range = encoding.range(document.text(), &(0..document.text().len()));
+                    Some(vec![lsp::TextEdit {
+                        range,
+                        new_text: formatted,
+                    }])
+                })
+            }
             other => {
                 let why = format!("`{other}` is not supported");
                 return Response::new_err(id, ErrorCode::MethodNotFound as i32, why);

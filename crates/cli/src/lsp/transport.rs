@@ -110,7 +110,7 @@ mod tests {
 
     #[test]
     fn a_head_that_cannot_be_read_is_an_error() {
-        for (head, told) in [
+        for (head, reported) in [
             ("Content-Length: x\r\n\r\n", "`x` is not the length"),
             (
                 "Content-Length: 18446744073709551616\r\n\r\n",
@@ -120,7 +120,7 @@ mod tests {
             ("GET / HTTP/1.1\r\n\r\n", "is not a header line"),
         ] {
             let error = read(&mut head.as_bytes()).unwrap_err().to_string();
-            assert!(error.contains(told), "{error}");
+            assert!(error.contains(reported), "{error}");
         }
     }
 }

@@ -49,8 +49,8 @@ pub(super) fn axes(arguments: &Arguments, evaluated: &MapSource) -> Result<Axes,
             *slot = Some(*value);
         }
     }
-    let asked = |axis: &Option<AxisChoice>| axis.as_ref().map(|a| index(&a.name)).transpose();
-    let (asked_x, asked_y) = (asked(&arguments.x)?, asked(&arguments.y)?);
+    let requested = |axis: &Option<AxisChoice>| axis.as_ref().map(|a| index(&a.name)).transpose();
+    let (asked_x, asked_y) = (requested(&arguments.x)?, requested(&arguments.y)?);
     for (axis, input) in [("x", asked_x), ("y", asked_y)] {
         if let Some(input) = input
             && fixed.get(input).copied().flatten().is_some()

@@ -7,7 +7,7 @@ use super::{Arguments, MapSource, painted, slice};
 use crate::{failure::Failure, output};
 
 /// Maximum number of slices: nobody would read more.
-const MOST_SLICES: usize = 100;
+const MAX_SLICES: usize = 100;
 
 /// Returns the picture and the values of a map of one or two inputs. With more inputs, it returns the values of a slice at every
 /// combination of the peaks of the inputs that are not axes.
@@ -23,8 +23,8 @@ pub(super) fn text(arguments: &Arguments, evaluated: &MapSource) -> Result<Strin
         return Ok(map_text(&slice, painted) + &values_text(&slice));
     }
     let slices: usize = others.iter().map(|(_, peaks)| peaks.len()).product();
-    if slices > MOST_SLICES {
-        let message = format!("the map has {slices} slices, but the limit is {MOST_SLICES}");
+    if slices > MAX_SLICES {
+        let message = format!("the map has {slices} slices, but the limit is {MAX_SLICES}");
         return Err(Failure::usage(message).help(
             "fix inputs with `--hold INPUT=VALUE`, or sample the map with `--csv --sample 1000`",
         ));

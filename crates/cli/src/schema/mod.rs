@@ -4,7 +4,7 @@ mod closed;
 
 use std::io::Write;
 
-use flagred_authoring::answers::{Checked, Explained};
+use flagred_authoring::answers::{CheckDocument, Explained};
 use flagred_report::{document::Document as FlightDocument, moment::Moment};
 use schemars::{JsonSchema, SchemaGenerator, generate::SchemaSettings};
 use serde_json::Value;
@@ -66,7 +66,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             return Ok(Exit::Clean);
         }
         Format::Assess => of::<FlightDocument<'_>>("assess", "assess --json"),
-        Format::Check => of::<Checked<'_>>("check", "check --json"),
+        Format::Check => of::<CheckDocument<'_>>("check", "check --json"),
         Format::Validate => of::<flagred_evaluation::Document<'_>>("evaluate", "validate --json"),
         Format::Explain => of::<Explained<'_>>("explain", "explain --json"),
         Format::Identify => of::<identify::Document<'_>>("identify", "identify --json"),

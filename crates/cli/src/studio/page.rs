@@ -83,8 +83,8 @@ mod tests {
     #[test]
     fn a_program_without_the_page_explains_how_to_get_it() {
         let failure = built_in(&packed("")).map(|page| page.html).unwrap_err();
-        let told = failure.to_string();
-        assert!(told.contains("without the page") && told.contains("`web/build`"));
+        let reported = failure.to_string();
+        assert!(reported.contains("without the page") && reported.contains("`web/build`"));
     }
 
     #[test]

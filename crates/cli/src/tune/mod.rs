@@ -181,16 +181,18 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let validation = match arguments.rows.no_validation || tuned.is_stopped {
         true => None,
         false => {
-            let mut told = |fold: u32, progress: &Progress<'_>| watch.step(progress, Some(fold));
-            cross_validate(original, &data, &settings, arguments.folds, &mut told)
+            let mut reported =
+                |fold: u32, progress: &Progress<'_>| watch.step(progress, Some(fold));
+            cross_validate(original, &data, &settings, arguments.folds, &mut reported)
                 .map_err(failed)?
         }
     };
     let curve = match &validation {
         Some(worth) if arguments.learning_curve => {
-            let mut told = |_: u32, _: &Progress<'_>| watch.more("learning curve");
+            let mut reported = |_: u32, _: &Progress<'_>| watch.more("learning curve");
             let folds = arguments.folds;
-            learning_curve(original, &data, &settings, folds, worth, &mut told).map_err(failed)?
+            learning_curve(original, &data, &settings, folds, worth, &mut reported)
+                .map_err(failed)?
         }
         _ => None,
     };

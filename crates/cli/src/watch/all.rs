@@ -146,8 +146,8 @@ fn listen(
         while let Some(packet) = stream.packet() {
             // Messages that cannot be verified are not used.
             if packet.sound == Some(true) {
-                let heard = LinkItem::Packet(source, packet.bytes.to_vec());
-                is_heard &= sender.send((link, heard)).is_ok();
+                let received = LinkItem::Packet(source, packet.bytes.to_vec());
+                is_heard &= sender.send((link, received)).is_ok();
             }
         }
         if !is_heard {
@@ -165,9 +165,9 @@ fn follow<'e>(
 ) {
     let (mut ticked, mut drawn) = (start, start);
     while !stop.load(Ordering::Relaxed) && !shown.printer.is_closed() {
-        let heard = receiver.recv_timeout(TICK);
+        let received = receiver.recv_timeout(TICK);
         let now_s = start.elapsed().as_secs_f64();
-        match heard {
+        match received {
             Ok((link, LinkItem::Packet(source, bytes))) => {
                 if let PacketScan::Packet(packet) = next_packet(&bytes) {
                     fleet.receive(now_s, (link, source), &packet, |id, event, session| {

@@ -13,7 +13,7 @@ use super::session::{Event, Session, SessionOutput, Source, VehicleView, may_be_
 /// Maximum number of vehicles at a time.
 const MOST: usize = 1_000;
 /// Maximum number of vehicles in the summary that are no longer received.
-const MOST_GONE: usize = 10_000;
+const MAX_GONE: usize = 10_000;
 /// A sender without evidence that it is a vehicle is dropped after this many seconds of silence.
 const STRAY_S: f64 = 10.0;
 /// A vehicle is dropped after this many seconds of silence. If it is received again, it counts as
@@ -33,7 +33,7 @@ pub(crate) struct VehicleId {
 /// A vehicle that is followed.
 pub(crate) struct Member<'e> {
     pub(crate) session: Session<'e>,
-    heard_s: f64,
+    received_s: f64,
     risk_max: Option<f64>,
 }
 
@@ -76,7 +76,7 @@ impl<'e> Fleet<'e> {
         now_s: f64,
         (link, source): (usize, Source),
         packet: &Packet<'_>,
-        mut tell: impl FnMut(VehicleId, &Event, &Session<'e>),
+        mut report: impl FnMut(VehicleId, &Event, &Session<'e>),
     ) {
         let system = packet.system;
         let id = VehicleId {
@@ -96,25 +96,25 @@ impl<'e> Fleet<'e> {
         let estimator = self.estimator;
         let member = self.members.entry(id).or_insert_with(|| Member {
             session: Session::new(estimator, None, false).keeping(HISTORY),
-            heard_s: now_s,
+            received_s: now_s,
             risk_max: None,
         });
-        member.heard_s = now_s;
+        member.received_s = now_s;
         member.session.receive(now_s, source, packet, &mut self.out);
-        member.tell(id, &mut self.out, &mut tell);
+        member.report(id, &mut self.out, &mut report);
     }
 
     /// Performs the periodic work, and drops silent vehicles.
     pub(crate) fn tick(
         &mut self,
         now_s: f64,
-        mut tell: impl FnMut(VehicleId, &Event, &Session<'e>),
+        mut report: impl FnMut(VehicleId, &Event, &Session<'e>),
     ) {
         let mut gone = Vec::new();
         for (id, member) in &mut self.members {
             member.session.tick(now_s, &mut self.out);
-            member.tell(*id, &mut self.out, &mut tell);
-            let silent_s = now_s - member.heard_s;
+            member.report(*id, &mut self.out, &mut report);
+            let silent_s = now_s - member.received_s;
             let is_stray = member.session.view().is_none();
             if silent_s >= if is_stray { STRAY_S } else { GONE_S } {
                 gone.push((*id, is_stray));
@@ -124,10 +124,10 @@ impl<'e> Fleet<'e> {
             let Some(mut member) = self.members.remove(&id) else {
                 continue;
             };
-            let summary = member.finish(id, &mut self.out, &mut tell);
+            let summary = member.finish(id, &mut self.out, &mut report);
             match is_stray {
                 true => {}
-                false if self.gone.len() >= MOST_GONE => self.forgotten += 1,
+                false if self.gone.len() >= MAX_GONE => self.forgotten += 1,
                 false => self.gone.push(summary),
             }
         }
@@ -136,12 +136,12 @@ impl<'e> Fleet<'e> {
     /// Ends all flights, and returns a summary of each vehicle, the worst first.
     pub(crate) fn finish(
         &mut self,
-        mut tell: impl FnMut(VehicleId, &Event, &Session<'e>),
+        mut report: impl FnMut(VehicleId, &Event, &Session<'e>),
     ) -> Vec<Summary> {
         let mut all = std::mem::take(&mut self.gone);
         for (id, mut member) in self.members.drain() {
             if member.session.view().is_some() {
-                all.push(member.finish(id, &mut self.out, &mut tell));
+                all.push(member.finish(id, &mut self.out, &mut report));
             }
         }
         all.sort_by(|a, b| gravity(b).total_cmp(&gravity(a)).then(a.id.cmp(&b.id)));
@@ -175,11 +175,11 @@ impl<'e> Fleet<'e> {
 }
 
 impl<'e> Member<'e> {
-    fn tell(
+    fn report(
         &mut self,
         id: VehicleId,
         out: &mut SessionOutput,
-        tell: &mut impl FnMut(VehicleId, &Event, &Session<'e>),
+        report: &mut impl FnMut(VehicleId, &Event, &Session<'e>),
     ) {
         // A fleet sends nothing.
         out.packets.clear();
@@ -190,7 +190,7 @@ impl<'e> Member<'e> {
                 let most = self.risk_max.unwrap_or(estimate.risk_pct);
                 self.risk_max = Some(most.max(estimate.risk_pct));
             }
-            tell(id, &event, &self.session);
+            report(id, &event, &self.session);
         }
     }
 
@@ -198,10 +198,10 @@ impl<'e> Member<'e> {
         &mut self,
         id: VehicleId,
         out: &mut SessionOutput,
-        tell: &mut impl FnMut(VehicleId, &Event, &Session<'e>),
+        report: &mut impl FnMut(VehicleId, &Event, &Session<'e>),
     ) -> Summary {
         let verdict = self.session.finish(out);
-        self.tell(id, out, tell);
+        self.report(id, out, report);
         Summary {
             id,
             verdict,
@@ -250,7 +250,7 @@ pub(crate) mod tests {
             }
         }
 
-        fn hear(&mut self, system: u8, message: &MavMessage) {
+        fn take_message(&mut self, system: u8, message: &MavMessage) {
             let bytes = Sender::new(1).packet(Version::V2, system, message);
             let PacketScan::Packet(packet) = next_packet(&bytes) else {
                 panic!("{bytes:?}");
@@ -263,9 +263,9 @@ pub(crate) mod tests {
             for tick in 0..10 * seconds {
                 for (system, in_air, pulses_us) in vehicles {
                     if tick % 10 == 0 {
-                        self.hear(*system, &quadrotor(*in_air));
+                        self.take_message(*system, &quadrotor(*in_air));
                     }
-                    self.hear(*system, &servo(self.now_s, *pulses_us));
+                    self.take_message(*system, &servo(self.now_s, *pulses_us));
                 }
                 self.now_s += 0.1;
                 self.fleet.tick(self.now_s, |_, _, _| {});
@@ -298,7 +298,7 @@ pub(crate) mod tests {
         let mut air = TestLink::new(&estimator);
         for second in 0..40 {
             air.fly(1, &[(1, true, HOVER), (3, false, [1000; 4])]);
-            air.hear(2, &quadrotor(second > 10));
+            air.take_message(2, &quadrotor(second > 10));
         }
         let all = air.fleet.finish(|_, _, _| {});
         let verdicts: Vec<(u8, String, String)> = all

@@ -13,7 +13,7 @@ use super::session::{
     ContactLoss, End, Event, FlightSummary, Session, SilentSource, Source, StopReason,
     UntrustedPacket, VehicleView,
 };
-use flagred_report::{finding::Teller, words::effective_range};
+use flagred_report::{finding::FindingContext, words::effective_range};
 
 /// Seconds of the vehicle's clock between two lines with the risk.
 const STEP_S: f64 = 1.0;
@@ -89,8 +89,10 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
             ),
         },
         Event::AnotherWatch {
-            component, speaks, ..
-        } => another_watch(*component, *speaks),
+            component,
+            is_sending,
+            ..
+        } => another_watch(*component, *is_sending),
         Event::AnotherVehicle { system } => {
             format!("vehicle {system} is also on the link, but is not followed")
         }
@@ -160,8 +162,8 @@ fn from(source: Source) -> String {
     source.map_or(String::new(), |address| format!(" from {address}"))
 }
 
-fn another_watch(component: Option<u8>, speaks: bool) -> String {
-    let (what, so) = match (component, speaks) {
+fn another_watch(component: Option<u8>, is_sending: bool) -> String {
+    let (what, so) = match (component, is_sending) {
         (None, _) => return "no other watch is received any more".to_owned(),
         (Some(1), false) => ("the autopilot itself sends the risk".to_owned(), "nothing"),
         (Some(number), false) => (
@@ -173,7 +175,7 @@ fn another_watch(component: Option<u8>, speaks: bool) -> String {
             "everything",
         ),
     };
-    let help = match speaks {
+    let help = match is_sending {
         false => "; with `--send-anyway`, both send",
         true => "",
     };
@@ -213,9 +215,12 @@ fn cause_of(lost: ContactLoss) -> &'static str {
     }
 }
 
-pub(super) fn teller<'a>(view: Option<&VehicleView<'a>>, estimator: &'a Estimator) -> Teller<'a> {
+pub(super) fn teller<'a>(
+    view: Option<&VehicleView<'a>>,
+    estimator: &'a Estimator,
+) -> FindingContext<'a> {
     let setup = view.and_then(|view| view.setup);
-    Teller {
+    FindingContext {
         estimator,
         motors: setup.map_or(&[], |setup| &setup.motors),
     }

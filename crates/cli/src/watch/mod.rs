@@ -307,7 +307,7 @@ impl Totals {
 struct Display {
     form: DisplayForm,
     printer: Printer,
-    told: SkipCounts,
+    reported: SkipCounts,
     drawn: Option<Instant>,
 }
 
@@ -337,7 +337,7 @@ impl Display {
         Ok(Display {
             form,
             printer,
-            told: SkipCounts::default(),
+            reported: SkipCounts::default(),
             drawn: None,
         })
     }
@@ -371,30 +371,30 @@ impl Display {
 
     /// Adds a note the first time that packets of a kind are skipped. The counts are reported at the end.
     fn skipped(&mut self, now: SkipCounts, events: &mut Vec<Event>) {
-        let told = std::mem::replace(&mut self.told, now);
+        let reported = std::mem::replace(&mut self.reported, now);
         let kinds = [
             (
-                told.signed,
+                reported.signed,
                 now.signed,
                 "signed packets are ignored: they cannot be verified without the key (`--key`)",
             ),
             (
-                told.unsigned,
+                reported.unsigned,
                 now.unsigned,
                 "packets that are not signed are refused",
             ),
             (
-                told.bad_signatures,
+                reported.bad_signatures,
                 now.bad_signatures,
                 "packets with a wrong or an already used signature are refused",
             ),
             (
-                told.unknown,
+                reported.unknown,
                 now.unknown,
                 "some messages are unknown: they are recorded, but not evaluated",
             ),
             (
-                told.bytes,
+                reported.bytes,
                 now.bytes,
                 "some bytes are not MAVLink packets: they are skipped",
             ),

@@ -60,7 +60,7 @@ enum PortState {
 }
 
 /// Maximum number of waiting connections.
-const MOST_WAITING: usize = 8;
+const MAX_WAITING: usize = 8;
 /// A client that is silent for this long is replaced by a waiting connection that sends.
 const CLIENT_SILENT: Duration = Duration::from_secs(2);
 
@@ -68,7 +68,7 @@ const CLIENT_SILENT: Duration = Duration::from_secs(2);
 struct Client {
     stream: TcpStream,
     address: SocketAddr,
-    heard: Instant,
+    received_at: Instant,
 }
 
 /// The result of reading from the port.
@@ -313,22 +313,22 @@ fn serve(
     waiting: &mut Vec<Client>,
     buffer: &mut [u8],
 ) -> PortEvent {
-    if waiting.len() < MOST_WAITING
+    if waiting.len() < MAX_WAITING
         && let Ok((stream, address)) = listener.accept()
         && let Ok(stream) = prepare(stream)
     {
-        let heard = Instant::now();
+        let received_at = Instant::now();
         waiting.push(Client {
             stream,
             address,
-            heard,
+            received_at,
         });
     }
     if let Some(open) = client {
         match read(&mut open.stream, buffer) {
             Ok(PortEvent::Nothing) => {}
             Ok(received) => {
-                open.heard = Instant::now();
+                open.received_at = Instant::now();
                 return received;
             }
             Err(why) => {
@@ -336,15 +336,15 @@ fn serve(
                 return PortEvent::Closed(why);
             }
         }
-        if open.heard.elapsed() < CLIENT_SILENT {
+        if open.received_at.elapsed() < CLIENT_SILENT {
             return PortEvent::Nothing;
         }
         // Drops waiting connections that closed.
         waiting.retain(|next| !matches!(peek(&next.stream), Ok(0)));
-        let speaks = |next: &Client| matches!(peek(&next.stream), Ok(1..));
-        let Some(index) = waiting.iter().position(speaks) else {
+        let is_sending = |next: &Client| matches!(peek(&next.stream), Ok(1..));
+        let Some(index) = waiting.iter().position(is_sending) else {
             // If all waiting connections are silent, the oldest is dropped for another one.
-            if waiting.len() == MOST_WAITING {
+            if waiting.len() == MAX_WAITING {
                 waiting.remove(0);
             }
             return PortEvent::Nothing;
@@ -357,7 +357,7 @@ fn serve(
         return PortEvent::Nothing;
     }
     let mut next = waiting.remove(0);
-    next.heard = Instant::now();
+    next.received_at = Instant::now();
     *client = Some(next);
     PortEvent::Opened
 }

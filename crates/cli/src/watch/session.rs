@@ -25,7 +25,7 @@ pub(crate) use event::{ContactLoss, End, Event, FlightSummary, SilentSource, Sto
 use flagred_report::finding::numbered;
 use history::ReceivedSample;
 pub(crate) use tracked_vehicle::VehicleView;
-use tracked_vehicle::{AssessedVehicle, TrackedVehicle, tell};
+use tracked_vehicle::{AssessedVehicle, TrackedVehicle, report};
 use trust::{Candidates, Proof, doubt_of};
 pub(crate) use trust::{Source, UntrustedCounts, UntrustedPacket, may_be_multirotor};
 use watch_sender::WatchSender;
@@ -127,15 +127,15 @@ impl<'e> Session<'e> {
             return false;
         };
         self.watch_sender
-            .hear(now_s, packet, echoes(&tracked.telemetry), out);
+            .take_message(now_s, packet, echoes(&tracked.telemetry), out);
         tracked.count(packet);
-        tracked.hear(now_s, out);
+        tracked.take_message(now_s, out);
         let jumps = tracked.telemetry.clock_jumps();
         let news = tracked.telemetry.receive(packet, now_s);
         let jumps = tracked.telemetry.clock_jumps() - jumps;
         if self.doubts.add(UntrustedPacket::ClockJump, jumps) {
             out.events
-                .push(told(UntrustedPacket::ClockJump, source, packet));
+                .push(untrusted_event(UntrustedPacket::ClockJump, source, packet));
         }
         match news {
             TelemetryChange::Rebooted => {
@@ -196,14 +196,14 @@ impl<'e> Session<'e> {
             return;
         }
         if packet.component != 1 {
-            self.watch_sender.hear(now_s, packet, false, out);
+            self.watch_sender.take_message(now_s, packet, false, out);
         }
         let doubt = doubt_of(packet);
         let is_other_end = doubt == Some(UntrustedPacket::SecondSender) && tracked.is_silent();
         if let Some(doubt) = doubt.filter(|_| !is_other_end)
             && self.doubts.add(doubt, 1)
         {
-            out.events.push(told(doubt, source, packet));
+            out.events.push(untrusted_event(doubt, source, packet));
         }
     }
 
@@ -278,7 +278,7 @@ impl<'e> Session<'e> {
         let is_open =
             (self.tracked.as_ref()).is_none_or(|tracked| !tracked.is_proved || tracked.is_silent());
         if is_open {
-            self.candidates.hear(source, packet);
+            self.candidates.take_message(source, packet);
         }
         let Some(vehicle) = vehicle_of(packet) else {
             return false;
@@ -314,7 +314,7 @@ impl<'e> Session<'e> {
             }
             let asked_in_vain = self.watch_sender.asks() && now_s - tracked.found_s >= PROOF_S;
             let gives_way = match tracked.is_proved {
-                true => now_s - tracked.heard_s >= GONE_S,
+                true => now_s - tracked.received_s >= GONE_S,
                 false => tracked.is_silent() || proof == Proof::Commands || asked_in_vain,
             };
             if !gives_way {
@@ -423,7 +423,7 @@ impl<'e> Session<'e> {
             return;
         }
         watch.latest = Some(update);
-        tell(watch.assessor.ended(), out);
+        report(watch.assessor.ended(), out);
         if in_air && !watch.is_flying {
             watch.is_flying = true;
             out.events.push(Event::TookOff { t_s });
@@ -461,7 +461,7 @@ impl<'e> Session<'e> {
             .risk_sent_s
             .is_none_or(|sent_s| now_s - sent_s >= RISK_S);
         if due
-            && self.watch_sender.speaks()
+            && self.watch_sender.is_sending()
             && let Ok(estimate) = update.risk
             && let Some(elevated_pct) = update.elevated_risk_pct
         {
@@ -523,7 +523,7 @@ fn echoes(telemetry: &Telemetry) -> bool {
 }
 
 /// Converts a doubt to an event.
-fn told(what: UntrustedPacket, source: Source, packet: &Packet<'_>) -> Event {
+fn untrusted_event(what: UntrustedPacket, source: Source, packet: &Packet<'_>) -> Event {
     Event::Doubt {
         what,
         system: packet.system,

@@ -62,16 +62,16 @@ impl Recording {
     }
 
     fn end(&mut self, error: &io::Error) -> String {
-        let told = format!("cannot record to `{}`: {error}", self.name);
+        let reported = format!("cannot record to `{}`: {error}", self.name);
         // The buffered bytes are dropped.
         let file = self.file.take().map(|file| file.into_parts().0);
         let is_whole = file.is_some_and(|file| file.set_len(self.written).is_ok());
         match is_whole {
             true => format!(
-                "{told}; the recording ends after {} bytes, the watch continues",
+                "{reported}; the recording ends after {} bytes, the watch continues",
                 self.written
             ),
-            false => format!("{told}; the recording ends inside a packet, the watch continues"),
+            false => format!("{reported}; the recording ends inside a packet, the watch continues"),
         }
     }
 }

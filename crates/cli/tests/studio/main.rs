@@ -25,7 +25,7 @@ fn the_page_is_written_as_one_file_and_never_over_an_input() {
     );
     let (code, said, _) = run(&["studio", "--page", "page.html", "--html", "-"]);
     assert_eq!((code, said), (Some(0), page()));
-    for (out, told) in [
+    for (out, reported) in [
         ("page.html", "cannot be written: it is also an input"),
         ("./page.html", "is the same file as `page.html`"),
         ("flight.BIN", "the page is HTML; write `flight.html`"),
@@ -33,7 +33,7 @@ fn the_page_is_written_as_one_file_and_never_over_an_input() {
     ] {
         let (code, _, error) = run(&["studio", "--page", "page.html", "--html", out]);
         assert_eq!(code, Some(2), "{out}: {error}");
-        assert!(error.contains(told), "{out}: {error}");
+        assert!(error.contains(reported), "{out}: {error}");
     }
     assert_eq!(
         fs::read_to_string(folder.path().join("page.html")).unwrap(),
@@ -53,7 +53,7 @@ fn files_that_cannot_be_served_are_reported() {
     let taken = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = taken.local_addr().unwrap().port().to_string();
     let in_use = format!("error: port {port} is in use\n  help: ");
-    for (arguments, code, told) in [
+    for (arguments, code, reported) in [
         (vec!["--port", &port], 2, &*in_use),
         (
             vec!["nowhere.yaml"],
@@ -99,6 +99,6 @@ fn files_that_cannot_be_served_are_reported() {
         }
         let (status, _, error) = common::flagred(folder.path(), &typed);
         assert_eq!(status, Some(code), "{typed:?}: {error}");
-        assert!(error.contains(told), "{typed:?}: {error}");
+        assert!(error.contains(reported), "{typed:?}: {error}");
     }
 }

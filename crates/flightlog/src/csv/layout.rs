@@ -7,9 +7,9 @@ use csv::ByteRecord;
 use super::{HELP, cell, problem};
 use crate::{Motor, Options, ReadError};
 
-const MOST_COLUMNS: usize = 4096;
+const MAX_COLUMNS: usize = 4096;
 /// The maximum number of motors: ArduPilot has up to 32 outputs, and its frames up to 12 motors.
-const MOST_MOTORS: usize = 32;
+const MAX_MOTORS: usize = 32;
 
 /// The meaning of the columns.
 pub(super) struct Layout {
@@ -31,11 +31,8 @@ impl Layout {
             .iter()
             .map(|name| String::from_utf8_lossy(cell(name)).into_owned())
             .collect();
-        if names.len() > MOST_COLUMNS {
-            let text = format!(
-                "there are {} columns, more than {MOST_COLUMNS}",
-                names.len()
-            );
+        if names.len() > MAX_COLUMNS {
+            let text = format!("there are {} columns, more than {MAX_COLUMNS}", names.len());
             return Err(problem(
                 line,
                 text,
@@ -81,8 +78,8 @@ impl Layout {
             true => ("motor", motor),
         };
         motors.sort_unstable();
-        if motors.len() > MOST_MOTORS {
-            let text = format!("there are {} motors, more than {MOST_MOTORS}", motors.len());
+        if motors.len() > MAX_MOTORS {
+            let text = format!("there are {} motors, more than {MAX_MOTORS}", motors.len());
             return Err(problem(
                 line,
                 text,

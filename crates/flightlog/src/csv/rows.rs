@@ -10,7 +10,7 @@ use crate::signal::{Label, SET_BACK_S};
 use crate::{Commands, Intervals, ReadError, Report, Series};
 
 /// Fractions that are outside 0 to 1 by at most this are rounding errors or slightly exceeded limits.
-const MOST_OUTSIDE: f64 = 0.5;
+const MAX_OUTSIDE: f64 = 0.5;
 const HELP_FRACTIONS: &str = "name columns of pulse widths in us `pwm1`.. and add the limits; divide percent by 100; for DShot see docs/flight-csv.md";
 const HELP_SHORT: &str = "give every row a cell for each column, empty where the value is unknown";
 /// The largest accepted distance of a time from 0, in seconds. Any 64-bit count of microseconds is within it after
@@ -19,7 +19,7 @@ const HELP_SHORT: &str = "give every row a cell for each column, empty where the
 const FURTHEST_S: f64 = 1e14;
 
 fn is_far_outside(command: f64) -> bool {
-    !command.is_nan() && !(-MOST_OUTSIDE..=1.0 + MOST_OUTSIDE).contains(&command)
+    !command.is_nan() && !(-MAX_OUTSIDE..=1.0 + MAX_OUTSIDE).contains(&command)
 }
 
 pub(super) struct RowCollector {

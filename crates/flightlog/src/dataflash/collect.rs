@@ -347,7 +347,7 @@ fn kind(kinds: &[Option<MessageType>], type_id: u8) -> Option<&MessageType> {
 }
 
 /// The maximum number of different series that changing definitions can create; undamaged logs have fewer.
-const MOST_SERIES: usize = 256;
+const MAX_SERIES: usize = 256;
 
 /// The index of the series for a message with these signals: the existing series if the definition is repeated,
 /// otherwise a new one.
@@ -357,11 +357,11 @@ fn series_of(known: &mut Vec<(&str, Series)>, name: &'static str, labels: Vec<La
     };
     known.iter().position(same).unwrap_or_else(|| {
         // If there are too many series, the index is out of range and the rows are dropped.
-        if known.len() < MOST_SERIES {
+        if known.len() < MAX_SERIES {
             known.push((name, Series::new(labels)));
             return known.len() - 1;
         }
-        MOST_SERIES
+        MAX_SERIES
     })
 }
 

@@ -63,8 +63,8 @@ pub(super) fn air_from_events(
     );
     // Firmware before 3.1 logs arming, but not take-off.
     let tells = |event| matches!(event, Landing::Left | Landing::Landed);
-    let told = events.iter().any(|&(_, event)| tells(event));
-    (armed, told.then_some(in_air))
+    let reported = events.iter().any(|&(_, event)| tells(event));
+    (armed, reported.then_some(in_air))
 }
 
 /// The boots at which the vehicle was in the air according to the events before them.

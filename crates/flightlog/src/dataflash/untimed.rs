@@ -4,7 +4,7 @@ use super::format::Cells;
 
 /// The maximum size of the pending messages in bytes, with an allowance for each message, so that a log without any time
 /// does not fill the memory.
-const MOST_BYTES: usize = 1 << 24;
+const MAX_BYTES: usize = 1 << 24;
 const BYTES_A_MESSAGE: usize = 64;
 
 /// A message that is pending until its time is known.
@@ -58,7 +58,7 @@ pub(super) struct UntimedMessages {
 impl UntimedMessages {
     /// Keeps a message until its time is known; returns `false` if there are too many already.
     pub(super) fn keep(&mut self, type_id: u8, cells: Cells<'_>) -> bool {
-        let has_room = self.pending_bytes < MOST_BYTES;
+        let has_room = self.pending_bytes < MAX_BYTES;
         if has_room {
             let pending = PendingMessage::new(type_id, cells);
             self.pending_bytes += pending.bytes();

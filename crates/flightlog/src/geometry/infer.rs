@@ -8,7 +8,7 @@ use super::{Basis, Geometry, in_order, tables};
 use crate::Flight;
 
 /// The minimum number of rows in the air.
-const FEWEST_ROWS: usize = 100;
+const MIN_ROWS: usize = 100;
 /// A layout fits if at most this share of the variance is outside its space. Calm and gusty flights have 0 to 0.02;
 /// failed motors and motors at a limit raise it.
 const FITS: f64 = 0.05;
@@ -224,7 +224,7 @@ impl Variance {
             with_outputs.add_known(&mut row, &[roll_out, pitch_out, yaw_out]);
             with_errors.add_known(&mut row, &errors);
         }
-        (commands.count >= FEWEST_ROWS).then_some(Self {
+        (commands.count >= MIN_ROWS).then_some(Self {
             commands,
             with_outputs,
             with_errors,
@@ -311,7 +311,7 @@ impl Covariance {
     /// The correlation of the effort of an axis with the controller output or the attitude error of that axis, which is
     /// in a column after the commands.
     fn with_effort(&self, factors: &[[f64; 3]], axis: usize) -> Option<f64> {
-        if self.count < FEWEST_ROWS {
+        if self.count < MIN_ROWS {
             return None;
         }
         let motors = factors.len();

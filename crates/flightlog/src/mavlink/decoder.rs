@@ -34,7 +34,7 @@ const PARAM_ERROR: u32 = 345;
 const READ_FAILED: u8 = 8;
 
 /// The maximum number of parameters that wait for the first heartbeat; any vehicle has fewer.
-const MOST_WAITING: usize = 1 << 12;
+const MAX_WAITING: usize = 1 << 12;
 
 /// A payload, filled up with the zeros that version 2 omits at its end.
 pub(crate) type Payload = [u8; 255];
@@ -190,8 +190,8 @@ impl Decoder {
                 // The version is in bytes 16 to 19, after the capabilities and the uid.
                 let version = number(payload, 16, NumberType::U32).map(|version| version as u32);
                 self.version = self.version.or(version);
-                let told = || identity::of_version(&payload[8..16], &payload[60..78]);
-                self.id = self.id.take().or_else(told);
+                let reported = || identity::of_version(&payload[8..16], &payload[60..78]);
+                self.id = self.id.take().or_else(reported);
                 DecoderChange::Nothing
             }
             EXTENDED_SYS_STATE => {
@@ -241,14 +241,14 @@ impl Decoder {
         if self.is_known() {
             return self.learn(name, value, kind);
         }
-        if self.waiting.len() < MOST_WAITING {
+        if self.waiting.len() < MAX_WAITING {
             self.waiting.push((name, value, kind));
         }
         DecoderChange::Nothing
     }
 
     fn parameter_error(&mut self, name: String, error: u8) -> DecoderChange {
-        if matches!(error, 0 | READ_FAILED) || self.absent.len() >= MOST_WAITING {
+        if matches!(error, 0 | READ_FAILED) || self.absent.len() >= MAX_WAITING {
             return DecoderChange::Nothing;
         }
         match self.absent.insert(name) {

@@ -41,7 +41,7 @@ const RATE_WAIT_S: f64 = 2.0;
 /// The time to wait after a few requests without effect, in seconds; it is longer, because the link may be slow.
 const RATE_PATIENCE_S: f64 = 15.0;
 /// The maximum packet loss that is compensated for in a measured rate.
-const MOST_LOST: f64 = 0.9;
+const MAX_LOST: f64 = 0.9;
 /// The time until a parameter is requested again, in seconds.
 const PARAMETER_WAIT_S: f64 = 0.5;
 /// The number of requests for a parameter. On a link that loses 3 of 10 packets in each direction, one parameter in a
@@ -144,7 +144,7 @@ impl Requests {
             } else {
                 (SLOW_AGAIN, 0.0)
             };
-            let arrives = 1.0 - lost_share.clamp(0.0, MOST_LOST);
+            let arrives = 1.0 - lost_share.clamp(0.0, MAX_LOST);
             let rate_hz = |i: usize| (seen[i] - then[i]) as f64 / waited_s / arrives;
             self.slow = std::array::from_fn(|i| {
                 telemetry.wants(i)

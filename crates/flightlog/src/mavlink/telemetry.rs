@@ -67,7 +67,7 @@ const CLOCK_SILENT_S: f64 = 2.0;
 #[derive(Debug, Default)]
 struct LiveClock {
     clock: Clock,
-    heard_s: Option<f64>,
+    received_s: Option<f64>,
     /// The latest stamp as received, to detect repeated packets, which do not confirm a timestamp.
     stamp: Option<u32>,
 }
@@ -257,7 +257,7 @@ impl Telemetry {
     /// but does not report a landed state (EXTENDED_SYS_STATE), if that state is older than 1.5 s, or if the motors
     /// were stopped on purpose.
     pub fn reported_in_air(&self, now_s: f64) -> Option<bool> {
-        let is_fresh = |heard_s: f64| now_s - heard_s <= LANDED_FRESH_S;
+        let is_fresh = |received_s: f64| now_s - received_s <= LANDED_FRESH_S;
         match self.is_in_air() {
             false => Some(false),
             true => (self.decoder.reports_flight() && self.landed_state_s.is_some_and(is_fresh))
@@ -503,8 +503,8 @@ impl Telemetry {
 impl LiveClock {
     /// The time of a stamp, if it is accepted.
     fn check(&mut self, t_s: f64, now_s: f64, jumps: &mut u64) -> Option<f64> {
-        let is_alive = |heard_s: f64| now_s - heard_s < CLOCK_SILENT_S;
-        if !self.clock.is_next(t_s) && self.heard_s.is_some_and(is_alive) {
+        let is_alive = |received_s: f64| now_s - received_s < CLOCK_SILENT_S;
+        if !self.clock.is_next(t_s) && self.received_s.is_some_and(is_alive) {
             *jumps += 1;
             return None;
         }
@@ -514,7 +514,7 @@ impl LiveClock {
             | TimestampDecision::Confirmed(_, t_s) => t_s,
             TimestampDecision::Wait | TimestampDecision::RefutedWait => return None,
         };
-        self.heard_s = Some(now_s);
+        self.received_s = Some(now_s);
         Some(t_s)
     }
 }

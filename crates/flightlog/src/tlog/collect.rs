@@ -265,9 +265,9 @@ impl SystemState {
         if self.decoder.is_px4() {
             vehicle.firmware = self.decoder.px4_firmware();
         }
-        let told = self.decoder.vehicle();
+        let reported = self.decoder.vehicle();
         if vehicle.id_source.as_deref() != Some(ardupilot::BOARD)
-            && let Some((id, source)) = told.id.zip(told.id_source)
+            && let Some((id, source)) = reported.id.zip(reported.id_source)
         {
             identity::name(vehicle, id, &source);
         }
@@ -275,12 +275,12 @@ impl SystemState {
             return;
         }
         // A quadplane may send the heartbeat of a plane, but not the reverse.
-        if !(vehicle.kind == VehicleKind::Vtol && told.kind == VehicleKind::Plane) {
-            vehicle.kind = told.kind;
-            vehicle.source = told.source;
+        if !(vehicle.kind == VehicleKind::Vtol && reported.kind == VehicleKind::Plane) {
+            vehicle.kind = reported.kind;
+            vehicle.source = reported.source;
         }
-        vehicle.frame = vehicle.frame.take().or(told.frame);
-        vehicle.motors = vehicle.motors.or(told.motors);
+        vehicle.frame = vehicle.frame.take().or(reported.frame);
+        vehicle.motors = vehicle.motors.or(reported.motors);
         if self.decoder.is_px4() {
             px4::count_rotors(vehicle, &self.decoder.parameters);
         }

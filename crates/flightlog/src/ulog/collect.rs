@@ -28,7 +28,7 @@ const COMPUTED: &str = "motor commands computed from torque and thrust set point
 /// belong to the torque.
 const LATE_THRUST_S: f64 = 0.1;
 /// The maximum number of topic announcements; a log of PX4 has a few hundred.
-const MOST_ANNOUNCED: usize = 4096;
+const MAX_ANNOUNCED: usize = 4096;
 
 pub(super) struct Collector<'o> {
     options: &'o Options,
@@ -142,7 +142,7 @@ impl<'o> Collector<'o> {
     /// Processes `A`: instance, number, name of a topic.
     fn announce(&mut self, body: &[u8]) {
         self.announced += 1;
-        if self.announced > MOST_ANNOUNCED {
+        if self.announced > MAX_ANNOUNCED {
             return self.report.bad("more than 4096 announced topics");
         }
         let Some((&[instance, low, high], name)) = body.split_first_chunk() else {

@@ -10,9 +10,9 @@ const DEEPEST: usize = 8;
 const LONGEST: usize = u16::MAX as usize;
 /// The maximum number of fields of a topic, including nested topics; PX4's topics have under 200. It bounds the time
 /// for nested definitions.
-const MOST_FIELDS: usize = 1024;
+const MAX_FIELDS: usize = 1024;
 /// The maximum size of all definitions in bytes; PX4's definitions have under a quarter of it.
-const MOST_BYTES: usize = 1_000_000;
+const MAX_BYTES: usize = 1_000_000;
 
 /// One field of a topic.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,7 +64,7 @@ impl Formats {
         if self.topics.contains_key(name) {
             return Ok(());
         }
-        if self.bytes + text.len() > MOST_BYTES {
+        if self.bytes + text.len() > MAX_BYTES {
             return Err("definitions of more than 1 MB in all");
         }
         let fields = fields
@@ -83,7 +83,7 @@ impl Formats {
         let fields = self.topics.get(topic)?;
         let padding = |field: &&Member| field.name.starts_with("_padding");
         let end = fields.iter().rev().take_while(padding).count();
-        let mut left = MOST_FIELDS;
+        let mut left = MAX_FIELDS;
         self.size_of(fields.get(..fields.len() - end)?, DEEPEST, &mut left)
     }
 
@@ -113,7 +113,7 @@ impl Formats {
             None => (name, 0_usize),
         };
         let mut offset = 0;
-        let mut left = MOST_FIELDS;
+        let mut left = MAX_FIELDS;
         for field in self.topics.get(topic)? {
             let size = self.field_size(field, DEEPEST, &mut left)?;
             if field.name == name {

@@ -6,7 +6,7 @@ use fuzzy::{
 };
 
 use super::{read::Reader, term::is_number};
-use crate::{Format, blocks, conditions::dual, model_draft::MOST_BLOCKS, rules, words};
+use crate::{Format, blocks, conditions::dual, model_draft::MAX_BLOCKS, rules, words};
 
 impl Reader<'_, '_> {
     /// Reads `KEY : WORD;`.
@@ -43,7 +43,7 @@ impl Reader<'_, '_> {
         self.next += usize::from(name.is_some());
         let part = self.here();
         let count = self.blocks.len();
-        if !self.draft.has_room(count, MOST_BLOCKS, "rule blocks", part) {
+        if !self.draft.has_room(count, MAX_BLOCKS, "rule blocks", part) {
             return self.skip("RULEBLOCK");
         }
         let mut block = Block::new(name.unwrap_or_default());

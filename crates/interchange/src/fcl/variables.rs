@@ -9,7 +9,7 @@ use fuzzy::{
 use super::{extent::extent, read::Reader, term};
 use crate::{
     fll::{self, habits},
-    model_draft::MOST_VARIABLES,
+    model_draft::MAX_VARIABLES,
     words,
 };
 
@@ -24,13 +24,13 @@ impl<'t> Reader<'_, 't> {
             if outputs {
                 if self
                     .draft
-                    .has_room(self.outputs.len(), MOST_VARIABLES, "outputs", name)
+                    .has_room(self.outputs.len(), MAX_VARIABLES, "outputs", name)
                 {
                     self.outputs.push(name);
                 }
             } else if self.draft.has_room(
                 self.draft.model.inputs.len(),
-                MOST_VARIABLES,
+                MAX_VARIABLES,
                 "inputs",
                 name,
             ) {
@@ -102,7 +102,7 @@ impl<'t> Reader<'_, 't> {
                 .any(|m| m.eq_ignore_ascii_case(word))
         });
         let count = self.draft.model.outputs.len();
-        if !self.draft.has_room(count, MOST_VARIABLES, "outputs", name) {
+        if !self.draft.has_room(count, MAX_VARIABLES, "outputs", name) {
             return self.skip("DEFUZZIFY");
         }
         let mut output = Output::new(Variable::new(name, f64::NAN, f64::NAN));

@@ -8,7 +8,7 @@ use fuzzy::{
 use super::{rules, term};
 use crate::{
     Format, Losses,
-    model_draft::{self, MOST_VARIABLES, ModelDraft},
+    model_draft::{self, MAX_VARIABLES, ModelDraft},
     shapes, words,
 };
 
@@ -79,7 +79,7 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
     let names: Vec<&str> = inputs.iter().map(|input| name(input)).collect();
     for section in &inputs {
         let count = draft.model.inputs.len();
-        if !draft.has_room(count, MOST_VARIABLES, "inputs", section.name) {
+        if !draft.has_room(count, MAX_VARIABLES, "inputs", section.name) {
             break;
         }
         if let Some((variable, spans)) = variable(&mut draft, section, &names, false) {
@@ -90,7 +90,7 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
     let defuzzifier = defuzzifier(&mut draft, system, weighted);
     for section in Section::numbered(&sections, "Output") {
         let count = draft.model.outputs.len();
-        if !draft.has_room(count, MOST_VARIABLES, "outputs", section.name) {
+        if !draft.has_room(count, MAX_VARIABLES, "outputs", section.name) {
             break;
         }
         if let Some((variable, spans)) = variable(&mut draft, section, &names, weighted) {

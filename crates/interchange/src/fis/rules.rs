@@ -145,7 +145,7 @@ struct TermReference {
     /// `NOT` and hedges of Octave.
     hedges: Vec<Hedge>,
     /// Whether the hedged degree is multiplied by the degree of the term.
-    once_more: bool,
+    is_repeated: bool,
 }
 
 impl TermReference {
@@ -157,7 +157,7 @@ impl TermReference {
                 term: Some(self.term.clone()),
             })
         };
-        if !self.once_more {
+        if !self.is_repeated {
             return is(self.hedges);
         }
         let hedges = self.hedges.iter().copied();
@@ -206,7 +206,7 @@ fn proposition(
         hedges.push(Hedge::Not);
     }
     let fraction = ((number.abs() - index) * 100.0).round();
-    let (own, once_more) = octave(draft, word, fraction)?;
+    let (own, is_repeated) = octave(draft, word, fraction)?;
     hedges.extend(own);
     let span = draft.span(word);
     let named = |text| Name {
@@ -217,7 +217,7 @@ fn proposition(
         variable: named(name),
         term: named(term),
         hedges,
-        once_more,
+        is_repeated,
     }))
 }
 

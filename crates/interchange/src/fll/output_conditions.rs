@@ -13,13 +13,13 @@ use crate::model_draft::ModelDraft;
 
 /// The maximum number of propositions that replace conditions on outputs. Without a limit, a chain of rules that read
 /// outputs could multiply them.
-const MOST_PROPOSITIONS: usize = 100_000;
+const MAX_PROPOSITIONS: usize = 100_000;
 
 pub(crate) fn replace(draft: &mut ModelDraft<'_>) {
     let concluding_rules = concluding_rules(&draft.model);
     let outputs = draft.model.outputs.iter();
     let outputs: BTreeSet<String> = outputs.map(|output| output.variable.name.clone()).collect();
-    let mut room = MOST_PROPOSITIONS;
+    let mut room = MAX_PROPOSITIONS;
     for index in 0..draft.model.rules.len() {
         let Some(rule) = draft.model.rules.get(index) else {
             return;
@@ -44,7 +44,7 @@ pub(crate) fn replace(draft: &mut ModelDraft<'_>) {
         if resolved.is_none() || depth(&condition) > 2 * DEEPEST_NESTING {
             let message = "the rule reads outputs whose rules have too many conditions".into();
             let help = format!(
-                "conditions about outputs are replaced by those of their rules; this may give at most {MOST_PROPOSITIONS} conditions, nested {DEEPEST_NESTING} deep"
+                "conditions about outputs are replaced by those of their rules; this may give at most {MAX_PROPOSITIONS} conditions, nested {DEEPEST_NESTING} deep"
             );
             draft.error("too-large", part, message, &help);
             return;

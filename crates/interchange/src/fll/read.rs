@@ -9,7 +9,7 @@ use fuzzy::{
 use super::{activation, habits, output_conditions, term};
 use crate::{
     Format, Losses, blocks,
-    model_draft::{MOST_BLOCKS, MOST_VARIABLES, ModelDraft},
+    model_draft::{MAX_BLOCKS, MAX_VARIABLES, ModelDraft},
     rules, words,
 };
 
@@ -104,7 +104,7 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
     let inputs: Vec<&str> = of(SectionKind::Input).map(|input| input.name).collect();
     for section in of(SectionKind::Input) {
         let count = draft.model.inputs.len();
-        if !draft.has_room(count, MOST_VARIABLES, "inputs", section.name) {
+        if !draft.has_room(count, MAX_VARIABLES, "inputs", section.name) {
             break;
         }
         // Values outside the range always count as the nearest value inside, whatever the flag; it must still be
@@ -117,7 +117,7 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
     }
     for section in of(SectionKind::Output) {
         let count = draft.model.outputs.len();
-        if !draft.has_room(count, MOST_VARIABLES, "outputs", section.name) {
+        if !draft.has_room(count, MAX_VARIABLES, "outputs", section.name) {
             return draft.finish();
         }
         output(&mut draft, section, &inputs);
@@ -337,7 +337,7 @@ fn operator<T: Copy>(
 fn blocks(draft: &mut ModelDraft<'_>, sections: &[&Section<'_>]) {
     let mut blocks = vec![];
     for (index, section) in sections.iter().enumerate() {
-        if !draft.has_room(index, MOST_BLOCKS, "rule blocks", section.name) {
+        if !draft.has_room(index, MAX_BLOCKS, "rule blocks", section.name) {
             break;
         }
         let mut block = Block::new(section.name);

@@ -12,7 +12,7 @@ use roxmltree::Node;
 use super::term;
 use crate::{
     Format, Losses, blocks,
-    model_draft::{MOST_BLOCKS, MOST_VARIABLES, ModelDraft},
+    model_draft::{MAX_BLOCKS, MAX_VARIABLES, ModelDraft},
     words,
 };
 
@@ -104,11 +104,11 @@ fn xml_mistake(error: &roxmltree::Error) -> (String, String) {
 }
 
 /// The maximum number of attributes of an element, because each is compared with the others.
-const MOST_ATTRIBUTES: usize = 1000;
+const MAX_ATTRIBUTES: usize = 1000;
 
 /// The maximum number of namespace declarations, because each element with a declaration copies the declarations of
 /// all elements around it.
-const MOST_NAMESPACES: usize = 100;
+const MAX_NAMESPACES: usize = 100;
 
 /// The maximum depth of nested elements.
 const DEEPEST_ELEMENTS: usize = 256;
@@ -137,18 +137,18 @@ fn too_large(text: &str) -> Option<(&str, String, &'static str)> {
             attributes += 1;
             let is_namespace = |key: &[u8]| key == b"xmlns" || key.starts_with(b"xmlns:");
             namespaces += usize::from(attribute.is_ok_and(|one| is_namespace(one.key.as_ref())));
-            if attributes > MOST_ATTRIBUTES {
+            if attributes > MAX_ATTRIBUTES {
                 break;
             }
         }
-        let (message, help) = if attributes > MOST_ATTRIBUTES {
+        let (message, help) = if attributes > MAX_ATTRIBUTES {
             (
-                format!("an element has more than {MOST_ATTRIBUTES} attributes"),
+                format!("an element has more than {MAX_ATTRIBUTES} attributes"),
                 "elements of FML have fewer than ten",
             )
-        } else if namespaces > MOST_NAMESPACES {
+        } else if namespaces > MAX_NAMESPACES {
             (
-                format!("there are more than {MOST_NAMESPACES} declarations of namespaces"),
+                format!("there are more than {MAX_NAMESPACES} declarations of namespaces"),
                 "FML needs one, of its root element; remove the `xmlns` attributes of others",
             )
         } else if depth >= DEEPEST_ELEMENTS {
@@ -277,7 +277,7 @@ impl Reader<'_> {
         let part = tag(self.draft.text, node);
         if !self
             .draft
-            .has_room(count, 2 * MOST_VARIABLES, "inputs and outputs", part)
+            .has_room(count, 2 * MAX_VARIABLES, "inputs and outputs", part)
         {
             return None;
         }
@@ -340,7 +340,7 @@ impl Reader<'_> {
     fn tsk(&mut self, node: Node<'_, '_>) {
         let part = tag(self.draft.text, node);
         let count = self.draft.model.outputs.len();
-        if !self.draft.has_room(count, MOST_VARIABLES, "outputs", part) {
+        if !self.draft.has_room(count, MAX_VARIABLES, "outputs", part) {
             return;
         }
         let name = attribute(node, "name").unwrap_or_default();
@@ -406,7 +406,7 @@ impl Reader<'_> {
         }
         let part = tag(self.draft.text, base);
         let count = self.blocks.len();
-        if !self.draft.has_room(count, MOST_BLOCKS, "rule blocks", part) {
+        if !self.draft.has_room(count, MAX_BLOCKS, "rule blocks", part) {
             return;
         }
         let block = self.operators(

@@ -6,7 +6,7 @@ use fastrand::Rng;
 use crate::data::{Data, range};
 
 /// The maximum number of rows for which a potential is computed; if there are more, a random sample is used.
-const MOST_ROWS: usize = 600;
+const MAX_ROWS: usize = 600;
 
 /// The distance around a center within which the potential of other points is reduced, in radii.
 const SQUASH: f64 = 1.25;
@@ -37,9 +37,9 @@ impl Clusters {
             .collect();
         let ranges: Vec<(f64, f64)> = columns.iter().map(|column| range(column)).collect();
         let mut rows: Vec<usize> = (0..data.len()).collect();
-        if rows.len() > MOST_ROWS {
+        if rows.len() > MAX_ROWS {
             Rng::with_seed(0).shuffle(&mut rows);
-            rows.truncate(MOST_ROWS);
+            rows.truncate(MAX_ROWS);
         }
         let scaled = |row: &usize| -> Vec<f64> {
             let all = columns.iter().zip(&ranges);

@@ -19,7 +19,7 @@ use clusters::Clusters;
 use fit::{Fit, RIDGE};
 use structure::{Axis, Structure};
 
-pub use model::MOST_TERMS;
+pub use model::MAX_TERMS;
 pub use validation::{IdentifyValidation, cross_validate};
 
 /// The kind of consequents.
@@ -54,7 +54,7 @@ pub struct Identification {
     pub inputs: Vec<String>,
     /// The maximum number of inputs, if they are selected.
     pub max_inputs: usize,
-    /// The maximum number of terms of an input, from 2 to [`MOST_TERMS`].
+    /// The maximum number of terms of an input, from 2 to [`MAX_TERMS`].
     pub max_terms: usize,
     /// The maximum number of rules.
     pub max_rules: usize,
@@ -114,13 +114,13 @@ pub struct IdentifyStep {
 
 /// A step must also reduce the error by this share of the error of predicting the mean: smaller reductions are
 /// irrelevant.
-const LEAST_GAIN_OF_ALL: f64 = 1e-3;
+const MIN_GAIN_OF_ALL: f64 = 1e-3;
 
 /// The radii of clusters that are tried, as shares of the ranges.
 const RADII: [f64; 4] = [0.3, 0.5, 0.7, 1.0];
 
 /// The maximum number of candidate columns, because each step of the search tries all of them.
-const MOST_COLUMNS: usize = 500;
+const MAX_COLUMNS: usize = 500;
 
 /// Rejects tables with more columns than [`identify`] accepts, so that a program can check this before it reads the
 /// rows.
@@ -128,10 +128,10 @@ const MOST_COLUMNS: usize = 500;
 /// # Errors
 /// [`TuneError::TooManyColumns`] if there are more columns.
 pub fn check_columns(columns: usize) -> Result<(), TuneError> {
-    match columns > MOST_COLUMNS {
+    match columns > MAX_COLUMNS {
         true => Err(TuneError::TooManyColumns {
             columns,
-            most: MOST_COLUMNS,
+            most: MAX_COLUMNS,
         }),
         false => Ok(()),
     }
@@ -234,7 +234,7 @@ impl Search<'_> {
     fn run(&self) -> (Structure, Vec<SearchStep>) {
         let mut best = Structure::Grid(Vec::new());
         let mut error = self.error(&best);
-        let least_of_all = LEAST_GAIN_OF_ALL * error;
+        let least_of_all = MIN_GAIN_OF_ALL * error;
         let mut steps = Vec::new();
         loop {
             let next = self
@@ -313,7 +313,7 @@ impl Search<'_> {
                 grown.push((input, terms, structure));
             }
         };
-        let max_terms = self.settings.max_terms.min(MOST_TERMS);
+        let max_terms = self.settings.max_terms.min(MAX_TERMS);
         for input in fresh {
             for terms in 2..=max_terms.min(3) {
                 if let Some(axis) = self.axis(*input, terms) {

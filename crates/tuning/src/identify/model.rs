@@ -26,7 +26,7 @@ const NAMES: [&[&str]; 4] = [
 ];
 
 /// The largest number of terms for which there are names.
-pub const MOST_TERMS: usize = NAMES.len() + 1;
+pub const MAX_TERMS: usize = NAMES.len() + 1;
 
 /// Rounds to a power of ten that is at most a twentieth of the range.
 pub(super) fn round(value: f64, range: f64, how: fn(f64) -> f64) -> f64 {

@@ -33,7 +33,7 @@ pub(crate) struct Change {
 }
 
 /// The size of a group of rules above which only neighbours are merged, not all subsets.
-const MOST_FOR_ALL_SUBSETS: usize = 6;
+const MAX_FOR_ALL_SUBSETS: usize = 6;
 
 /// The changes that make rules shorter, largest reduction first. If `loose`, outputs may change, so rules with
 /// different consequents and weights are merged as well.
@@ -342,9 +342,9 @@ fn consequents(derived: &DerivedRule) -> String {
 }
 
 /// The subsets of `count` ordered members that have at least two members; only runs of neighbours if `count` exceeds
-/// [`MOST_FOR_ALL_SUBSETS`].
+/// [`MAX_FOR_ALL_SUBSETS`].
 fn subsets(count: usize) -> Vec<Vec<usize>> {
-    if count <= MOST_FOR_ALL_SUBSETS {
+    if count <= MAX_FOR_ALL_SUBSETS {
         let bits = 0_u32..1 << count;
         let of = |bits: u32| {
             (0..count)

@@ -23,7 +23,7 @@ use reference::ReferenceOutputs;
 pub const EQUAL: f64 = 1e-12;
 
 /// The maximum number of rules of a rule set to simplify: the time grows faster than the square of their number.
-pub const MOST_RULES: usize = 1_000;
+pub const MAX_RULES: usize = 1_000;
 
 /// Settings of [`simplify()`].
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -83,8 +83,8 @@ pub enum SimplifyError {
     /// There is not exactly one column for each input, or the columns have different lengths.
     #[error("there must be a column for each input of the model, all of one length")]
     Columns,
-    /// There are more than [`MOST_RULES`] rules.
-    #[error("the rule set has {rules} rules; at most {MOST_RULES} are simplified")]
+    /// There are more than [`MAX_RULES`] rules.
+    #[error("the rule set has {rules} rules; at most {MAX_RULES} are simplified")]
     TooManyRules {
         /// The number of rules.
         rules: usize,
@@ -147,7 +147,7 @@ pub fn simplify(
     {
         return Err(SimplifyError::Tolerance { tolerance });
     }
-    if model.rules.len() > MOST_RULES {
+    if model.rules.len() > MAX_RULES {
         return Err(SimplifyError::TooManyRules {
             rules: model.rules.len(),
         });

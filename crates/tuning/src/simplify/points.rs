@@ -9,7 +9,7 @@ use fuzzy::{
 use super::antecedent::parts;
 
 /// The maximum number of grid points; if the grid has more, a sample of this size is drawn.
-pub(crate) const MOST_ON_THE_GRID: usize = 50_000;
+pub(crate) const MAX_ON_THE_GRID: usize = 50_000;
 
 /// The number of random points between those of the grid.
 pub(crate) const BETWEEN: usize = 40_000;
@@ -26,7 +26,7 @@ pub(crate) fn points(model: &Model, seed: u64) -> Vec<Vec<f64>> {
     let combinations = levels
         .iter()
         .try_fold(1, |count: usize, levels| count.checked_mul(levels.len()))
-        .filter(|count| *count <= MOST_ON_THE_GRID);
+        .filter(|count| *count <= MAX_ON_THE_GRID);
     let mut rows: Vec<Vec<f64>> = match combinations {
         Some(count) => (0..count)
             .map(|index| combination(&levels, index))
@@ -36,7 +36,7 @@ pub(crate) fn points(model: &Model, seed: u64) -> Vec<Vec<f64>> {
                 let one = |levels: &Vec<f64>| random.choice(levels).copied().unwrap_or(0.0);
                 levels.iter().map(one).collect()
             };
-            (0..MOST_ON_THE_GRID).map(|_| draw()).collect()
+            (0..MAX_ON_THE_GRID).map(|_| draw()).collect()
         }
     };
     rows.extend((0..BETWEEN).map(|_| {

@@ -14,7 +14,7 @@ use super::{Difference, SimplifyError};
 const CHUNK: usize = 4096;
 
 /// The maximum number of points that are tried first, because earlier candidates failed at them.
-const MOST_HARD: usize = 64;
+const MAX_HARD: usize = 64;
 
 /// Points, and the outputs of the original there.
 pub(crate) struct ReferenceOutputs {
@@ -113,7 +113,7 @@ impl ReferenceOutputs {
             let rows = first..(first + CHUNK).min(self.len());
             let outcomes = evaluate(&engine, &columns, rows.clone())?;
             if let Err(row) = self.worst(rows, &outcomes, tolerances, &mut worst) {
-                self.hard.truncate(MOST_HARD - 1);
+                self.hard.truncate(MAX_HARD - 1);
                 self.hard.insert(0, row);
                 return None;
             }

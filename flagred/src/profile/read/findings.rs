@@ -7,7 +7,7 @@ use fuzzy::{
     tree::{Entry, Fields, Node},
 };
 
-use super::Found;
+use super::Mistakes;
 use crate::profile::{CauseWords, ProfileInput};
 
 /// The maximum length of a brief in bytes. With the level and the elevated risk before it, it fits into a message of 50
@@ -20,7 +20,7 @@ const PLACEHOLDERS: [&str; 2] = ["percent", "value"];
 pub(super) fn findings(
     fields: &Fields,
     inputs: &[ProfileInput],
-    found: &mut Found,
+    found: &mut Mistakes,
 ) -> Vec<CauseWords> {
     let entries = fields.get("findings").and_then(|node| {
         let help =
@@ -45,12 +45,12 @@ pub(super) fn findings(
 
 const WORDS: &str = "{code: fighting_gusts, brief: fighting gusts, text: ..., advice: ...}";
 
-fn words(entry: &Entry, found: &mut Found) -> Option<CauseWords> {
+fn words(entry: &Entry, found: &mut Mistakes) -> Option<CauseWords> {
     let what = format!("finding `{}`", entry.key);
     let keys = ["code", "brief", "text", "advice"];
     let help = format!("write `{}: {WORDS}`", entry.key);
     let fields = entry.value.fields(&what, &keys, &help, found)?;
-    let mut read = |key, check: fn(&Node, &str, &mut Found)| {
+    let mut read = |key, check: fn(&Node, &str, &mut Mistakes)| {
         let help = format!("write `{key}`; docs/findings.md has examples");
         let node = fields.require(key, &help, found)?;
         let words = node.words(&format!("`{key}`"), &help, found)?;
@@ -67,11 +67,11 @@ fn words(entry: &Entry, found: &mut Found) -> Option<CauseWords> {
     })
 }
 
-fn refuse(node: &Node, message: String, help: String, found: &mut Found) {
+fn refuse(node: &Node, message: String, help: String, found: &mut Mistakes) {
     found.push(Diagnostic::error("finding", node.span.clone(), message).help(help));
 }
 
-fn check_code(node: &Node, code: &str, found: &mut Found) {
+fn check_code(node: &Node, code: &str, found: &mut Mistakes) {
     let is_letter = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
     if code.is_empty() || !code.chars().all(is_letter) {
         let message = format!("`{code}` is not a code");
@@ -80,7 +80,7 @@ fn check_code(node: &Node, code: &str, found: &mut Found) {
     }
 }
 
-fn check_brief(node: &Node, brief: &str, found: &mut Found) {
+fn check_brief(node: &Node, brief: &str, found: &mut Mistakes) {
     if let Some(letter) = brief.chars().find(|c| !c.is_ascii()) {
         let message = format!("`{letter}` in `brief` is not an ASCII character");
         let help = "programs that support only ASCII show it: write letters without accents";
@@ -93,7 +93,7 @@ fn check_brief(node: &Node, brief: &str, found: &mut Found) {
     }
 }
 
-fn check_placeholders(node: &Node, text: &str, found: &mut Found) {
+fn check_placeholders(node: &Node, text: &str, found: &mut Mistakes) {
     for part in text.split('{').skip(1) {
         let name = part.split_once('}').map(|(name, _)| name);
         if !name.is_some_and(|name| PLACEHOLDERS.contains(&name)) {

@@ -7,7 +7,7 @@ use fuzzy::{
     tree::{Entry, Fields, Node, Value, percentage_of_share, share_of_percentage},
 };
 
-use super::{Bounds, Found, number};
+use super::{Bounds, Mistakes, number};
 use crate::{
     profile::{ProfileInput, Ratio},
     source::{Motors, Signal, Source, Statistic},
@@ -29,10 +29,10 @@ const STATISTICS: [(&str, Statistic); 10] = [
 /// The keys of a ratio.
 const RATIO: [&str; 2] = ["per", "at_least"];
 
-type OfNumber = fn(f64) -> Statistic;
+type StatisticOfNumber = fn(f64) -> Statistic;
 
 /// The statistics with a parameter, `{share_below: 0.1, of: SIGNAL}`.
-const WITH_NUMBER: [(&str, OfNumber); 3] = [
+const WITH_NUMBER: [(&str, StatisticOfNumber); 3] = [
     ("share_below", Statistic::ShareBelow),
     ("share_above", Statistic::ShareAbove),
     ("percentile", Statistic::Percentile),
@@ -45,7 +45,7 @@ const MOTORS: [(&str, Motors); 4] = [
     ("max", Motors::Max),
 ];
 
-pub(super) fn inputs(fields: &Fields, window_s: f64, found: &mut Found) -> Vec<ProfileInput> {
+pub(super) fn inputs(fields: &Fields, window_s: f64, found: &mut Mistakes) -> Vec<ProfileInput> {
     let help =
         "write the source of each input of the rule set: `inputs: {margin: {mean: motor_margin}}`";
     let Some(node) = fields.require("inputs", help, found) else {
@@ -90,7 +90,7 @@ fn input(
     entry: &Entry,
     entries: &[Entry],
     window_s: f64,
-    found: &mut Found,
+    found: &mut Mistakes,
 ) -> Option<ProfileInput> {
     let what = format!("input `{}`", entry.key);
     let statistics = STATISTICS.iter().map(|(name, _)| *name);
@@ -281,7 +281,7 @@ fn input(
 }
 
 /// Reads `per: OTHER, at_least: NUMBER`.
-fn ratio(fields: &Fields, entry: &Entry, entries: &[Entry], found: &mut Found) -> Option<Ratio> {
+fn ratio(fields: &Fields, entry: &Entry, entries: &[Entry], found: &mut Mistakes) -> Option<Ratio> {
     let help = "write for example `per: room, at_least: 0.02`, with an input `room` beside it";
     let per = fields.require("per", help, found);
     let least = fields.require("at_least", help, found);
@@ -294,7 +294,7 @@ fn ratio(fields: &Fields, entry: &Entry, entries: &[Entry], found: &mut Found) -
 }
 
 /// The name of the input that a ratio divides by.
-fn other(node: &Node, entry: &Entry, entries: &[Entry], found: &mut Found) -> Option<String> {
+fn other(node: &Node, entry: &Entry, entries: &[Entry], found: &mut Mistakes) -> Option<String> {
     let name = &node
         .words(
             "an input of a ratio",
@@ -314,7 +314,7 @@ fn other(node: &Node, entry: &Entry, entries: &[Entry], found: &mut Found) -> Op
 }
 
 /// Reads the name of a signal, which is neither a number nor a computation.
-fn signal_name<'n>(node: &'n Node, what: &str, found: &mut Found) -> Option<&'n str> {
+fn signal_name<'n>(node: &'n Node, what: &str, found: &mut Mistakes) -> Option<&'n str> {
     let name = node
         .words(
             what,
@@ -342,7 +342,7 @@ fn signal_name<'n>(node: &'n Node, what: &str, found: &mut Found) -> Option<&'n 
 const PAIRS: [&str; 3] = ["difference", "ratio", "product"];
 
 /// Reads `motor_margin`, `{min: motor_margin}`, `{motor: 3, of: motor_margin}` or `{difference: [yaw_des_deg, yaw_deg]}`.
-fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)> {
+fn signal(node: &Node, what: &str, found: &mut Mistakes) -> Option<(Motors, Signal)> {
     if !matches!(node.value, Value::Mapping(_)) {
         let name = signal_name(node, &format!("the signal of {what}"), found)?;
         return Some((Motors::Pooled, Signal::named(name)));
@@ -434,7 +434,7 @@ fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)
 }
 
 /// Reads `[yaw_des_deg, yaw_deg]`.
-fn pair(key: &str, node: &Node, found: &mut Found) -> Option<[String; 2]> {
+fn pair(key: &str, node: &Node, found: &mut Mistakes) -> Option<[String; 2]> {
     let (what, example) = match key {
         "difference" => (
             "which is the first minus the second",

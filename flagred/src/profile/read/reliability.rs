@@ -7,10 +7,10 @@ use fuzzy::{
     tree::{Fields, Node},
 };
 
-use super::Found;
+use super::Mistakes;
 use crate::profile::{Followed, Reliability};
 
-pub(super) fn reliability(fields: &Fields, found: &mut Found) -> Vec<Reliability> {
+pub(super) fn reliability(fields: &Fields, found: &mut Mistakes) -> Vec<Reliability> {
     let items = fields.get("reliability").and_then(|node| {
         let help = format!("write `reliability: [{ROW}]`, with a row for each range of risks");
         node.items("`reliability`", &help, found)
@@ -34,7 +34,7 @@ pub(super) fn reliability(fields: &Fields, found: &mut Found) -> Vec<Reliability
 
 const ROW: &str = "{risk: [60, 80], real: {moments: 889, followed: 759}}";
 
-fn row(node: &Node, found: &mut Found) -> Option<Reliability> {
+fn row(node: &Node, found: &mut Mistakes) -> Option<Reliability> {
     let what = "a row of `reliability`";
     let help = format!("write `{ROW}`");
     let fields = node.fields(what, &["risk", "real", "simulated"], &help, found)?;
@@ -56,7 +56,7 @@ fn row(node: &Node, found: &mut Found) -> Option<Reliability> {
     })
 }
 
-fn pair(node: &Node, found: &mut Found) -> Option<[f64; 2]> {
+fn pair(node: &Node, found: &mut Mistakes) -> Option<[f64; 2]> {
     let help = "write `risk: [60, 80]`";
     let items = node.items("`risk`", help, found)?;
     let [from, to] = items else {
@@ -69,7 +69,7 @@ fn pair(node: &Node, found: &mut Found) -> Option<[f64; 2]> {
     Some([from.finite("`risk`", found)?, to.finite("`risk`", found)?])
 }
 
-fn followed(fields: &Fields, key: &str, found: &mut Found) -> Option<Followed> {
+fn followed(fields: &Fields, key: &str, found: &mut Mistakes) -> Option<Followed> {
     let node = fields.get(key)?;
     let help = format!("write `{key}: {{moments: 889, followed: 759}}`");
     let fields = node.fields(&format!("`{key}`"), &["moments", "followed"], &help, found)?;

@@ -7,10 +7,10 @@ use fuzzy::{
     tree::{Fields, Node},
 };
 
-use super::{Bounds, Found, number};
+use super::{Bounds, Mistakes, number};
 use crate::verdict::{LevelSettings, Limit, NoticeSettings, Threshold, VerdictSettings};
 
-pub(super) fn verdict(fields: &Fields, found: &mut Found) -> VerdictSettings {
+pub(super) fn verdict(fields: &Fields, found: &mut Mistakes) -> VerdictSettings {
     let default = VerdictSettings::default();
     let keys = [
         "warn",
@@ -59,7 +59,7 @@ pub(super) fn level(
     fields: &Fields,
     key: &str,
     default: LevelSettings,
-    found: &mut Found,
+    found: &mut Mistakes,
 ) -> LevelSettings {
     let what = format!("`{key}`");
     let keys = ["risk", "elevated_risk", "after_s", "until"];
@@ -118,7 +118,7 @@ fn number_or<'n>(node: &'n Node, other: &'n str) -> &'n str {
     node.as_number_text().unwrap_or(other)
 }
 
-fn threshold(fields: &Fields, what: &str, found: &mut Found) -> Threshold {
+fn threshold(fields: &Fields, what: &str, found: &mut Mistakes) -> Threshold {
     let mut limit = |key: &str| {
         let node = fields.get(key)?;
         let before = found.len();
@@ -147,7 +147,7 @@ fn threshold(fields: &Fields, what: &str, found: &mut Found) -> Threshold {
 }
 
 /// Reads the limit of a notice: `{above: 0.04, after_s: 10}`.
-fn limit(fields: &Fields, key: &str, side: &str, found: &mut Found) -> Option<Limit> {
+fn limit(fields: &Fields, key: &str, side: &str, found: &mut Mistakes) -> Option<Limit> {
     let what = format!("`{key}`");
     let node = fields.get(key)?;
     let written = number_or(node, "0.1");

@@ -6,7 +6,7 @@ use super::super::calculus::{Kinks, levels};
 use super::super::maxima::{INSIDE, turns};
 use super::{ActivatedTerm, ConsequentOperators, Curves, Run, Strengths, Workspace};
 use crate::model::{Aggregation, Implication};
-use crate::table::{LEAST_STRENGTH, numeric::root};
+use crate::table::{MIN_STRENGTH, numeric::root};
 
 /// The cuts of one evaluation.
 struct Cuts<'a> {
@@ -113,11 +113,11 @@ impl Curves {
                 if kinks == Kinks::CrossingsAndSteps {
                     let pair = [*first, *second];
                     let slope = |x: f64, width: f64| self.slope(&pair, Aggregation::Sum, x, width);
-                    cuts.at_sign_changes(|x| sum(&pair, x) - (1.0 - LEAST_STRENGTH), slope);
+                    cuts.at_sign_changes(|x| sum(&pair, x) - (1.0 - MIN_STRENGTH), slope);
                 }
             }
             if kinks == Kinks::Steps {
-                cuts.at_sign_change(|x| degree(first, x) - LEAST_STRENGTH, is_line(first));
+                cuts.at_sign_change(|x| degree(first, x) - MIN_STRENGTH, is_line(first));
             }
         }
         if kinks == Kinks::Bound {

@@ -2,7 +2,7 @@
 
 use alloc::{vec, vec::Vec};
 
-use super::{MOST_KNOTS, Measure};
+use super::{MAX_KNOTS, Measure};
 use crate::defuzzify::maxima::monotone;
 use crate::model::Term;
 use crate::table::numeric::gauss;
@@ -170,7 +170,7 @@ pub(super) fn knots(flank: &Flank, cuts: &[f64], measure: Measure) -> Option<Vec
         } else {
             open.extend([(middle, b), (a, middle)]);
         }
-        if knots.len() > MOST_KNOTS {
+        if knots.len() > MAX_KNOTS {
             return None;
         }
     }

@@ -10,7 +10,7 @@
 //! These bounds contain every value, but are too wide: they treat the degrees of the terms of an input as independent,
 //! whereas `x IS low` and `x IS high` cannot both have a large degree. In smaller intervals the error is smaller. So the
 //! intervals of the inputs are divided, always where the bound of an output is farthest out, until the bound is close to
-//! a value that occurs, or [`MOST_BOXES`] is reached. Each step keeps the bounds valid.
+//! a value that occurs, or [`MAX_BOXES`] is reached. Each step keeps the bounds valid.
 //!
 //! For many rule sets this is not needed, because the extremes are known to be at a few points: see `vertices.rs`.
 
@@ -28,11 +28,11 @@ mod stage;
 mod vertices;
 
 /// The maximum number of parts of the inputs that are evaluated for each end of an output.
-const MOST_BOXES: usize = 400;
+const MAX_BOXES: usize = 400;
 
 /// The number of steps of integrations after which the inputs are not divided further. It bounds the time for sets of many
 /// curved terms; all other rule sets stay far below it.
-const MOST_STEPS: u64 = 20_000_000;
+const MAX_STEPS: u64 = 20_000_000;
 
 /// The search for a bound ends when a value that occurs is this close to it, as a share of the interval of all values
 /// that occurred.
@@ -43,7 +43,7 @@ const CLOSE: f64 = 0.005;
 const ROUNDING: f64 = 1e-10;
 
 /// The maximum number of uncertain inputs for which all corners are evaluated.
-const MOST_CORNERS: usize = 4;
+const MAX_CORNERS: usize = 4;
 
 /// An interval of numbers.
 ///
@@ -148,7 +148,7 @@ impl OutputBounds {
 }
 
 /// The working memory of the search for the ends.
-struct Search<'s> {
+struct EndSearch<'s> {
     enclosure: &'s Enclosure<'s>,
     stages: Vec<RangedScratch>,
     known: Vec<OutputBounds>,
@@ -160,30 +160,30 @@ struct Search<'s> {
 
 /// A part of the inputs.
 #[derive(Debug, Clone)]
-struct Part {
+struct InputBox {
     inputs: Vec<Interval>,
     known: OutputBounds,
-    /// The bound of the searched end in this part, as [`End::of`] returns it. The part with the largest value is
+    /// The bound of the searched end in this part, as [`IntervalEnd::of`] returns it. The part with the largest value is
     /// divided first.
     urgency: f64,
     scores: Vec<f64>,
 }
 
-impl PartialEq for Part {
+impl PartialEq for InputBox {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for Part {}
+impl Eq for InputBox {}
 
-impl PartialOrd for Part {
+impl PartialOrd for InputBox {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for Part {
+impl Ord for InputBox {
     fn cmp(&self, other: &Self) -> Ordering {
         self.urgency.total_cmp(&other.urgency)
     }
@@ -191,18 +191,18 @@ impl Ord for Part {
 
 /// An end of an interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum End {
+enum IntervalEnd {
     Low,
     High,
 }
 
-impl End {
+impl IntervalEnd {
     /// Returns how far out this end of an interval is: the upper end, or the negated lower end.
     fn of(self, values: Option<Interval>) -> f64 {
         match (values, self) {
             (None, _) => f64::NEG_INFINITY,
-            (Some(values), End::Low) => -values.low,
-            (Some(values), End::High) => values.high,
+            (Some(values), IntervalEnd::Low) => -values.low,
+            (Some(values), IntervalEnd::High) => values.high,
         }
     }
 }
@@ -286,7 +286,7 @@ impl Enclosure<'_> {
             whole.push(interval.within(range));
         }
         let count = engine.outputs.len();
-        let mut search = Search {
+        let mut search = EndSearch {
             enclosure: self,
             stages: self.stages.iter().map(RangedStage::scratch).collect(),
             known: vec![OutputBounds::UNDEFINED; count],
@@ -341,7 +341,7 @@ impl Enclosure<'_> {
     }
 }
 
-impl Search<'_> {
+impl EndSearch<'_> {
     /// Evaluates a point.
     fn point(&mut self, inputs: &[f64]) {
         let engine = self.enclosure.engine;
@@ -361,7 +361,7 @@ impl Search<'_> {
         let is_uncertain = |input: &&usize| inputs.get(**input).is_some_and(|it| it.width() > 0.0);
         let all: Vec<usize> = (0..inputs.len()).collect();
         let uncertain: Vec<usize> = all.iter().filter(is_uncertain).copied().collect();
-        if uncertain.len() > MOST_CORNERS {
+        if uncertain.len() > MAX_CORNERS {
             return;
         }
         for corner in 0..1_u32 << uncertain.len() {
@@ -378,7 +378,7 @@ impl Search<'_> {
     }
 
     /// Returns the bounds of an output over a part of the inputs.
-    fn part(&mut self, output: usize, end: End, inputs: Vec<Interval>) -> Part {
+    fn part(&mut self, output: usize, end: IntervalEnd, inputs: Vec<Interval>) -> InputBox {
         let mut scores = vec![0.0; inputs.len()];
         for (stage, scratch) in self.enclosure.stages.iter().zip(&mut self.stages) {
             stage.enclose(&inputs, scratch, &mut self.known);
@@ -397,7 +397,7 @@ impl Search<'_> {
             .get(output)
             .copied()
             .unwrap_or(OutputBounds::UNDEFINED);
-        Part {
+        InputBox {
             inputs,
             known,
             urgency: end.of(known.values),
@@ -407,8 +407,8 @@ impl Search<'_> {
 
     /// Returns the bounds of an output over all inputs.
     fn enclose(&mut self, output: usize, whole: &[Interval]) -> OutputBounds {
-        let low = self.search(output, End::Low, whole);
-        let high = self.search(output, End::High, whole);
+        let low = self.search(output, IntervalEnd::Low, whole);
+        let high = self.search(output, IntervalEnd::High, whole);
         // Both searches divide the same inputs, so each of them may prove that the output is defined.
         let mut known = OutputBounds {
             values: None,
@@ -425,12 +425,12 @@ impl Search<'_> {
     }
 
     /// Divides the inputs where an end of an output is farthest out. Returns the bounds of all parts together.
-    fn search(&mut self, output: usize, end: End, whole: &[Interval]) -> OutputBounds {
+    fn search(&mut self, output: usize, end: IntervalEnd, whole: &[Interval]) -> OutputBounds {
         let mut parts = BinaryHeap::from([self.part(output, end, whole.to_vec())]);
         let mut count = 1;
         let steps = |stages: &[RangedScratch]| stages.iter().map(RangedScratch::steps).sum::<u64>();
         let before = steps(&self.stages);
-        while count < MOST_BOXES && steps(&self.stages) - before < MOST_STEPS {
+        while count < MAX_BOXES && steps(&self.stages) - before < MAX_STEPS {
             let Some(mut worst) = parts.peek_mut() else {
                 break;
             };

@@ -10,11 +10,11 @@ use alloc::{vec, vec::Vec};
 
 use super::super::{Engine, arrays::OwnedTable};
 use super::stage::RangedStage;
-use super::{Interval, OutputBounds, Search};
+use super::{EndSearch, Interval, OutputBounds};
 use crate::table::{ClosedForm, Output};
 
 /// The maximum number of vertices that are evaluated.
-const MOST_VERTICES: usize = 4096;
+const MAX_VERTICES: usize = 4096;
 
 /// The outputs of an engine whose extremes are at vertices.
 #[derive(Debug)]
@@ -59,11 +59,11 @@ impl Vertices {
             count = count.saturating_mul(along.len());
             grid.push(along);
         }
-        (count <= MOST_VERTICES).then_some(grid)
+        (count <= MAX_VERTICES).then_some(grid)
     }
 }
 
-impl Search<'_> {
+impl EndSearch<'_> {
     /// Evaluates all vertices. Returns the bounds of each output whose extremes are among them.
     pub(super) fn vertices(
         &mut self,

@@ -39,9 +39,9 @@ struct Cell {
 }
 
 /// The maximum number of cells that an evaluation visits.
-const MOST_VISITED: usize = 16;
+const MAX_VISITED: usize = 16;
 /// The maximum number of firing strengths.
-const MOST_STRENGTHS: usize = 16;
+const MAX_STRENGTHS: usize = 16;
 
 impl Uniform {
     /// Prepares a table for vector instructions; `None` if it is not supported.
@@ -55,7 +55,7 @@ impl Uniform {
             return None;
         };
         let fits = table.outputs.len() == 1
-            && table.sizes.strengths as usize <= MOST_STRENGTHS
+            && table.sizes.strengths as usize <= MAX_STRENGTHS
             && (3..=4).contains(&table.axes.len());
         if !fits || !has_cells_alone(table) {
             return None;
@@ -120,8 +120,8 @@ impl Uniform {
         let degrees = Lines::new([a, b, c, d]).degrees(simd, at);
         let of_cells = self.and.cells(simd, degrees);
         let [a, b, c, d] = [a, b, c, d].map(|line| line.literal);
-        let mut visited = [of_cells; MOST_VISITED / 4];
-        let mut cells = [a + c; MOST_VISITED];
+        let mut visited = [of_cells; MAX_VISITED / 4];
+        let mut cells = [a + c; MAX_VISITED];
         (cells[1], cells[2], cells[3]) = (b + c, a + d, b + d);
         let mut vectors = 1;
         for axis in more {
@@ -141,7 +141,7 @@ impl Uniform {
         }
         let mut top = splat(simd, 0.0);
         // Adjacent cells often act on the same strength; separate banks avoid waiting for the previous addition.
-        let mut banks = [[0.0; MOST_STRENGTHS]; 4];
+        let mut banks = [[0.0; MAX_STRENGTHS]; 4];
         for (i, degrees) in visited.iter_mut().enumerate().take(vectors) {
             let cell = |of: usize| self.cells.get(cells[4 * i + of] as usize);
             let four_cells = [cell(0)?, cell(1)?, cell(2)?, cell(3)?];
@@ -150,11 +150,11 @@ impl Uniform {
             top = top.max(*degrees);
             let of_cells = four_cells.into_iter().zip(degrees.to_array());
             for ((cell, strength), bank) in of_cells.zip(&mut banks) {
-                let kept = &mut bank[cell.strength as usize % MOST_STRENGTHS];
+                let kept = &mut bank[cell.strength as usize % MAX_STRENGTHS];
                 *kept = larger(*kept, strength);
             }
         }
-        for (i, strength) in strengths.iter_mut().enumerate().take(MOST_STRENGTHS) {
+        for (i, strength) in strengths.iter_mut().enumerate().take(MAX_STRENGTHS) {
             let [a, b, c, d] = [banks[0][i], banks[1][i], banks[2][i], banks[3][i]];
             *strength = [larger(larger(a, b), larger(c, d))];
         }
@@ -166,7 +166,7 @@ impl Uniform {
         }
         let mut rule = u32::MAX;
         while coverage > 0.0 && strongest != 0 {
-            let cell = cells[strongest.trailing_zeros() as usize % MOST_VISITED];
+            let cell = cells[strongest.trailing_zeros() as usize % MAX_VISITED];
             rule = rule.min(self.cells.get(cell as usize)?.rule);
             strongest &= strongest - 1;
         }

@@ -197,7 +197,7 @@ pub(super) fn any_model() -> impl Strategy<Value = Model> {
         (
             any_operators(),
             any_activation(),
-            prop_oneof![Just(LEAST_STRENGTH), Just(1e-6)],
+            prop_oneof![Just(MIN_STRENGTH), Just(1e-6)],
             vec(any_block(), 0..3),
         ),
         vec(rule, 1..5),

@@ -20,7 +20,7 @@ from .storage import LOGS
 
 __all__ = ["main"]
 
-MOST_REPORTS = 1000
+MAX_REPORTS = 1000
 
 
 class Progress:
@@ -183,8 +183,8 @@ def _report(given: argparse.Namespace) -> int:
 
 def _worst(text: str) -> int:
     kind, _, count = text.partition(":")
-    if kind != "worst" or not count.isdigit() or not 1 <= int(count) <= MOST_REPORTS:
-        raise argparse.ArgumentTypeError(f"`{text}` is not `worst:N` with N from 1 to {MOST_REPORTS}")
+    if kind != "worst" or not count.isdigit() or not 1 <= int(count) <= MAX_REPORTS:
+        raise argparse.ArgumentTypeError(f"`{text}` is not `worst:N` with N from 1 to {MAX_REPORTS}")
     return int(count)
 
 

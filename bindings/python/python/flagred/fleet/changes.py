@@ -17,7 +17,7 @@ import numpy as np
 from .history import MEASURES, History, Reals, histories, marks
 from .permutation import Sum, p_values, shuffled, student
 
-__all__ = ["LEAST_DAYS", "LEVEL", "Change", "find_changes"]
+__all__ = ["MIN_DAYS", "LEVEL", "Change", "find_changes"]
 
 LEVEL = 0.01
 """The probability that a change is found in a fleet without changes."""
@@ -25,11 +25,11 @@ FAMILIES = 3
 """Marks, weeks and vehicles are three families of tests; each gets a third of ``LEVEL``."""
 SIDE = 4
 """The minimum number of days of a vehicle before and after a change."""
-LEAST_DAYS = 2 * SIDE
+MIN_DAYS = 2 * SIDE
 """The minimum number of days of a vehicle that is compared with itself."""
 AGREEMENT = 2 / 3
 """The minimum share of vehicles that must change in the same direction for a change of the fleet."""
-MOST_WEEKS = 104
+MAX_WEEKS = 104
 """The latest weeks that are searched for a change of the whole fleet."""
 CLEAR = 6.0
 """The minimum difference of the Bayesian information criterion to distinguish a step from a slope: odds of 20 to 1."""
@@ -87,7 +87,7 @@ def find_changes(connection: Any, parts: Mapping[str, Sequence[tuple[float, str]
         The probability that a change is found in a fleet without changes.
     """
     fleet, _ = histories(connection)
-    fleet = [history for history in fleet if len(history) >= LEAST_DAYS]
+    fleet = [history for history in fleet if len(history) >= MIN_DAYS]
     chance = np.random.default_rng(SEED)
     shuffles = SHUFFLES if sum(map(len, fleet)) <= MANY_DAYS else FEWER_SHUFFLES
     of_parts = {vehicle: list(some) for vehicle, some in (parts or {}).items()}
@@ -152,7 +152,7 @@ def _by_week(fleet: Sequence[History]) -> Splits:
     # 1 January 1970 was a Thursday.
     monday = np.floor((last - 4 * 86_400) / week_s) * week_s + 4 * 86_400
     splits: Splits = {}
-    for number in range(min(MOST_WEEKS, int((monday - min(history.start_s[0] for history in fleet)) // week_s) + 1)):
+    for number in range(min(MAX_WEEKS, int((monday - min(history.start_s[0] for history in fleet)) // week_s) + 1)):
         since_s = monday - number * week_s
         rows = [(history, int(np.searchsorted(history.start_s, since_s))) for history in fleet]
         cut = [_Split(history, 0, len(history), row) for history, row in rows if SIDE <= row <= len(history) - SIDE]

@@ -17,7 +17,7 @@ from .takeover import check, take_over
 
 __all__ = ["compact"]
 
-MOST_BYTES = 64 << 20
+MAX_BYTES = 64 << 20
 """The maximum size of the steps in a file."""
 
 
@@ -57,7 +57,7 @@ def _parts(out: Place) -> Iterator[list[str]]:
         part: list[str] = []
         size = 0
         for path in month:
-            if part and size + sizes.get(path, 0) > MOST_BYTES:
+            if part and size + sizes.get(path, 0) > MAX_BYTES:
                 yield part
                 part, size = [], 0
             part.append(path)

@@ -24,7 +24,7 @@ from .takeover import Superseded
 
 __all__ = ["cluster", "cores", "run"]
 
-MOST_WORKER_BYTES = 2 << 30
+MAX_WORKER_BYTES = 2 << 30
 """The memory limit of a local worker in bytes. A worker that exceeds it is killed, and its log is recorded as crashed."""
 TRIES = 2
 """How often a shard may kill its local worker before it is split."""
@@ -55,7 +55,7 @@ def cluster(scheduler: str | None, workers: int | None) -> Iterator[Client]:
         local = LocalCluster(
             n_workers=count,
             threads_per_worker=1,
-            memory_limit=min(MOST_WORKER_BYTES, MEMORY_LIMIT * 2 // (3 * count)),
+            memory_limit=min(MAX_WORKER_BYTES, MEMORY_LIMIT * 2 // (3 * count)),
             host="127.0.0.1",
             dashboard_address="127.0.0.1:0",
             silence_logs=logging.CRITICAL,

@@ -13,7 +13,7 @@ __all__ = ["MEASURES", "History", "histories", "marks"]
 MEASURES = ("risk_mean_pct", "risk_max_pct", "warned_pct")
 """The columns of ``History.values``: mean and highest risk of a flight, and the share of flights with WARN or FAIL."""
 DAY_S = 86_400
-LEAST_DIFFERENCES = 60
+MIN_DIFFERENCES = 60
 """The minimum number of pairs of successive flights with which the influence of wind and time in the air is estimated."""
 
 Reals = NDArray[np.float64]
@@ -65,7 +65,7 @@ def histories(connection: Any) -> tuple[list[History], bool]:
     # Uses the differences between successive flights of a vehicle, so that the level, trends and rare steps of its risk do not
     # count as influence of the wind.
     across, up = np.diff(influences, axis=0)[same], np.diff(values, axis=0)[same]
-    is_adjusted = len(across) >= LEAST_DIFFERENCES
+    is_adjusted = len(across) >= MIN_DIFFERENCES
     if is_adjusted:
         slopes, *_ = np.linalg.lstsq(across, up, rcond=1e-8)
         values = values - (influences - influences.mean(axis=0)) @ slopes

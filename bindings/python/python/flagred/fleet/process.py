@@ -19,7 +19,7 @@ from .takeover import still_ours
 
 __all__ = ["Outcome", "process", "write"]
 
-LEAST_LOG_BYTES = 4096
+MIN_LOG_BYTES = 4096
 """The approximate minimum size of a log's rows in the dataset, in bytes."""
 TRIES_S = (0.5, 2.0, 8.0)
 """The delays before an object is requested again, in seconds."""
@@ -51,7 +51,7 @@ def process(shard: Shard, job: Job) -> Outcome:
     """
     source, out = open_place(shard.source), open_place(job.out)
     # Detects a full disk before the logs are read.
-    out.require_space(LEAST_LOG_BYTES * len(shard.logs))
+    out.require_space(MIN_LOG_BYTES * len(shard.logs))
     rows: dict[str | None, Rows] = {}
     unchanged = 0
     for log in shard.logs:

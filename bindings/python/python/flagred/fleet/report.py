@@ -13,7 +13,7 @@ from typing import Any
 
 from .._core import _page
 from .alerts import advice, alerts, key, run_command, sentence, to_json
-from .changes import LEAST_DAYS, LEVEL, Change, find_changes
+from .changes import MIN_DAYS, LEVEL, Change, find_changes
 from .charts import Point, chart
 from .flight_reports import write_flight_reports
 from .names import EMPTY, read_names, read_parts
@@ -112,7 +112,7 @@ def _document(name: str, changes: Sequence[Change], found: Sequence[Change], ans
         "last_report_utc": news.last_utc,
         "flights": sum(row["flights"] for row in answers["verdicts"]),
         "vehicles": len(answers["vehicles"]),
-        "vehicles_compared": sum(row["days"] >= LEAST_DAYS for row in answers["vehicles"]),
+        "vehicles_compared": sum(row["days"] >= MIN_DAYS for row in answers["vehicles"]),
         "new_flights": news.flights,
         "new_warned": news.warned,
         "level": LEVEL,
@@ -193,10 +193,10 @@ def _to_act_on(found: Sequence[Change], news: News, at: Mapping[str, str]) -> st
 
 def _compared(vehicles: Sequence[Row]) -> str:
     """The number of vehicles with enough flights to find a change. Changes of all other vehicles are unknown."""
-    count = sum(row["days"] >= LEAST_DAYS for row in vehicles)
+    count = sum(row["days"] >= MIN_DAYS for row in vehicles)
     if count == len(vehicles) > 0:
         return ""
-    return f"<p class=soft>{count:,} of {len(vehicles):,} vehicles have flights on at least {LEAST_DAYS} days. For the others, no change can be detected yet.</p>"
+    return f"<p class=soft>{count:,} of {len(vehicles):,} vehicles have flights on at least {MIN_DAYS} days. For the others, no change can be detected yet.</p>"
 
 
 def _others(changes: Sequence[Change]) -> str:

@@ -11,9 +11,9 @@ from .storage import Log
 
 __all__ = ["Job", "Shard", "largest", "shards"]
 
-MOST_BYTES = 128 << 20
+MAX_BYTES = 128 << 20
 """The maximum size of a shard, unless it is one log."""
-MOST_LOGS = 1000
+MAX_LOGS = 1000
 """The maximum number of logs of a shard, if they are small."""
 PER_CORE = 4
 """The minimum number of shards per core, if there are as many logs: the cores then finish at about the same time."""
@@ -74,10 +74,10 @@ class Shard:
 def largest(logs: int, bytes: int, cores: int) -> tuple[int, int]:
     """The maximum bytes and logs of a shard, chosen so that a small fleet uses all cores too."""
     parts = PER_CORE * max(1, cores)
-    return min(MOST_BYTES, -(-bytes // parts)), max(1, min(MOST_LOGS, -(-logs // parts)))
+    return min(MAX_BYTES, -(-bytes // parts)), max(1, min(MAX_LOGS, -(-logs // parts)))
 
 
-def shards(logs: Iterable[tuple[str, Log]], most_bytes: int, most_logs: int = MOST_LOGS) -> Iterator[Shard]:
+def shards(logs: Iterable[tuple[str, Log]], most_bytes: int, most_logs: int = MAX_LOGS) -> Iterator[Shard]:
     """Divides logs with their sources, in order, into shards. A log larger than the limit is a shard of its own."""
     part: list[Log] = []
     size = 0

@@ -15,16 +15,16 @@ import numpy as np
 
 from .._core import _page
 from .alerts import advice, sentence
-from .changes import LEAST_DAYS, LEVEL, Change
+from .changes import MIN_DAYS, LEVEL, Change
 from .charts import Mark, Point, chart
 from .permutation import student
 from .tables import STYLE, Column, Row, date, day, figures, known, link, log_link, number, table, verdict
 
 __all__ = ["write_vehicle_pages"]
 
-MOST_FLIGHTS = 400
+MAX_FLIGHTS = 400
 """The number of latest flights on the page of a vehicle."""
-LEAST_FLIGHTS = 8
+MIN_FLIGHTS = 8
 """The minimum number of flights to estimate a drift."""
 WEEK_S = 604_800
 
@@ -33,7 +33,7 @@ SELECT f.*, w.what, w.advice FROM (
   SELECT flight_id, vehicle, vehicle_id, site, pilot, log, epoch(start_utc) AS start_s, start_utc, firmware, verdict, in_air_s,
     risk_mean_pct, risk_max_pct, motor_commands, motor_margins, weakest_motor, weakest_margin
   FROM judged WHERE vehicle IN (SELECT unnest(?)) AND risk_max_pct IS NOT NULL
-  QUALIFY row_number() OVER (PARTITION BY vehicle ORDER BY start_utc DESC NULLS LAST, flight_id) <= {MOST_FLIGHTS}) f
+  QUALIFY row_number() OVER (PARTITION BY vehicle ORDER BY start_utc DESC NULLS LAST, flight_id) <= {MAX_FLIGHTS}) f
 LEFT JOIN (
   SELECT flight_id, arg_max(text, (severity = 'FAIL')::INT * 1000 + coalesce(value_pct, 0)) AS what,
     arg_max(advice, (severity = 'FAIL')::INT * 1000 + coalesce(value_pct, 0)) AS advice
@@ -104,15 +104,15 @@ def _body(
             "<h2>Motors</h2>",
             _motors(rows, vehicles),
             f"<h2>Flights that warned</h2>{_warned(warned[::-1], reports)}",
-            f"<p class=soft>The latest {MOST_FLIGHTS} judged flights are shown.</p>" if len(rows) == MOST_FLIGHTS else "",
+            f"<p class=soft>The latest {MAX_FLIGHTS} judged flights are shown.</p>" if len(rows) == MAX_FLIGHTS else "",
         ]
     )
 
 
 def _calm(rows: Sequence[Row]) -> str:
     days = {date(row["start_utc"]) for row in rows if row["start_utc"] is not None}
-    if len(days) < LEAST_DAYS:
-        return f"Whether the risk of this vehicle changes is unknown: it has flights on fewer than {LEAST_DAYS} days."
+    if len(days) < MIN_DAYS:
+        return f"Whether the risk of this vehicle changes is unknown: it has flights on fewer than {MIN_DAYS} days."
     return "The risk of this vehicle did not change more than by chance."
 
 
@@ -179,7 +179,7 @@ def _slope(x: Any, y: Any) -> tuple[float, float, float] | None:
     """The slope with its 95 % interval; None for too few flights."""
     is_known = np.isfinite(x)
     x, y = x[is_known] - x[is_known].mean() if is_known.any() else x[is_known], y[is_known]
-    if len(x) < LEAST_FLIGHTS or not (x**2).sum() > 0:
+    if len(x) < MIN_FLIGHTS or not (x**2).sum() > 0:
         return None
     slope = float((x * y).sum() / (x**2).sum())
     left = float(((y - y.mean() - slope * x) ** 2).sum())

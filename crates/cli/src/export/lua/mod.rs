@@ -92,10 +92,10 @@ pub(super) fn text(estimator: &Estimator, plan: &Plan<'_>) -> Result<String, Uns
         ("WARN", risk(&settings.verdict.warn)),
         ("FAIL", risk(&settings.verdict.fail)),
     ];
-    let told = levels
+    let reported = levels
         .into_iter()
         .filter_map(|(name, risk)| Some((name, risk?)));
-    let parameters = [("ENABLE", 1.0)].into_iter().chain(told);
+    let parameters = [("ENABLE", 1.0)].into_iter().chain(reported);
     filling.put(
         "parameters",
         parameters
@@ -106,16 +106,16 @@ pub(super) fn text(estimator: &Estimator, plan: &Plan<'_>) -> Result<String, Uns
     filling.set("warn_risk", levels[0].1.is_some());
     filling.set("fail_risk", levels[1].1.is_some());
     let notices = &settings.verdict.notices;
-    let told = [notices.reserve.is_some(), notices.imbalance.is_some()];
-    filling.set("reserve", told[0]);
-    filling.set("imbalance", told[1]);
-    filling.set("notices", told.contains(&true));
+    let reported = [notices.reserve.is_some(), notices.imbalance.is_some()];
+    filling.set("reserve", reported[0]);
+    filling.set("imbalance", reported[1]);
+    filling.set("notices", reported.contains(&true));
     let mut size = Size::default();
     inputs::fill(estimator, plan, &mut filling, &mut size)?;
     rules::fill(estimator, plan, &mut filling, &mut size)?;
     let parts = PARTS.iter().filter(|(name, _)| match *name {
-        "notices" => told.contains(&true),
-        "balance" => told[1],
+        "notices" => reported.contains(&true),
+        "balance" => reported[1],
         "geometry" => filling.holds("geometry"),
         _ => true,
     });
@@ -166,7 +166,7 @@ fn constants(plan: &Plan<'_>, filling: &mut TemplateValues) {
         set(name, value.to_owned());
     }
     set("MIN_SAMPLES", sampling.min_samples.to_string());
-    set("LEAST_STRENGTH", number(plan.rules.table.least_strength));
+    set("MIN_STRENGTH", number(plan.rules.table.least_strength));
     set("WARM_UP_US", microseconds(sampling.warm_up_s));
     set("LONGEST_GAP_US", microseconds(sampling.longest_gap_s));
     set("TAKE_OFF_US", microseconds(sampling.take_off_s));

@@ -14,7 +14,7 @@ use super::{frames, number, template::TemplateValues};
 const ROUNDING: f64 = 1e-6;
 
 /// The smallest divisor of a ratio. Ratios with smaller divisors may be infinite in 32 bits and are reported as unknown.
-const LEAST_DIVISOR: f64 = 1e-6;
+const MIN_DIVISOR: f64 = 1e-6;
 
 const AXES: [&str; 4] = ["roll", "pitch", "yaw", "thrust"];
 
@@ -58,7 +58,7 @@ impl Script {
                 unknown_below,
             } => {
                 let [a, b] = [a, b].map(|signal| self.signal(signal, signals));
-                let least = number(unknown_below.max(LEAST_DIVISOR));
+                let least = number(unknown_below.max(MIN_DIVISOR));
                 let name = format!("{a}_by_{b}_{}", least.replace(['.', '-', '+'], "_"));
                 let ratio =
                     format!("{a} and {b} and max({b}, -{b}) >= {least} and {a} / {b} or nil");

@@ -78,7 +78,7 @@ impl<'e> Bench<'e> {
             }));
     }
 
-    fn hear(&mut self, message: &MavMessage) {
+    fn take_message(&mut self, message: &MavMessage) {
         let bytes = self.vehicle.packet(Version::V2, 1, message);
         self.hear_bytes(None, &bytes);
     }
@@ -97,7 +97,7 @@ impl<'e> Bench<'e> {
     pub(crate) fn beat(&mut self, in_air: bool) {
         let times = if self.session.view().is_none() { 3 } else { 1 };
         for _ in 0..times {
-            self.hear(&quadrotor(in_air));
+            self.take_message(&quadrotor(in_air));
         }
     }
 
@@ -121,7 +121,7 @@ impl<'e> Bench<'e> {
     }
 
     fn parameter(&mut self, name: &str, value: f32) {
-        self.hear(&MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
+        self.take_message(&MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
             param_value: value,
             param_count: 900,
             param_index: u16::MAX,
@@ -161,7 +161,7 @@ impl<'e> Bench<'e> {
             if i % 25 == 0 {
                 self.beat(true);
             }
-            self.hear(&servo(from_s + f64::from(i) / 25.0, pulses(i)));
+            self.take_message(&servo(from_s + f64::from(i) / 25.0, pulses(i)));
             self.wait(0.03);
         }
     }
@@ -209,11 +209,11 @@ fn missing_parameters_are_assumed_and_late_ones_are_used() {
             "effective range 0.15 to 0.95",
         ]
     );
-    let asked = |message: &MavMessage| match message {
+    let requested = |message: &MavMessage| match message {
         MavMessage::PARAM_REQUEST_READ(request) => request.param_id.to_str() == Ok("MOT_PWM_MIN"),
         _ => false,
     };
-    assert_eq!(bench.count_sent(asked), 20);
+    assert_eq!(bench.count_sent(requested), 20);
 
     bench.all_parameters();
     bench.wait(0.1);
@@ -361,11 +361,11 @@ fn a_lasting_imbalance_is_reported_with_its_motor_until_landing() {
         bench.session.view().unwrap().latest.unwrap().level,
         Some(Level::Warn)
     );
-    let told = bench.events.iter().rev().find_map(|event| match event {
+    let reported = bench.events.iter().rev().find_map(|event| match event {
         Event::Level { text, motor, .. } => Some((text.clone(), motor.as_ref()?.number)),
         _ => None,
     });
-    let (text, motor) = told.unwrap();
+    let (text, motor) = reported.unwrap();
     assert!(text.starts_with("FLAGRED: WARN motor 3 weak: +"), "{text}");
     assert_eq!(motor, 3);
     let mut out = SessionOutput::default();
@@ -418,10 +418,10 @@ fn a_silence_makes_the_risk_unknown_and_is_reported_once() {
     assert_eq!(bench.count(lost(SilentSource::MotorCommands)), 0);
     let view = bench.session.view().unwrap();
     assert!(view.latest.is_none() && view.margin.is_none() && view.motors.is_empty());
-    let asked = bench.sent.len();
+    let requested = bench.sent.len();
     bench.wait(0.5);
     assert!(
-        bench.sent.len() <= asked + 1,
+        bench.sent.len() <= requested + 1,
         "it is not asked while it is not there"
     );
 
@@ -467,13 +467,13 @@ fn a_vehicle_whose_motors_are_not_all_known_ends_with_that_reason() {
     });
     for i in 0..500 {
         if i % 25 == 0 {
-            bench.hear(&hexarotor);
+            bench.take_message(&hexarotor);
         }
         if i == 50 {
             bench.all_parameters();
             bench.parameter("FRAME_CLASS", 2.0);
         }
-        bench.hear(&servo(10.0 + f64::from(i) / 25.0, [1500; 4]));
+        bench.take_message(&servo(10.0 + f64::from(i) / 25.0, [1500; 4]));
         bench.wait(0.03);
     }
     let verdict = bench.session.finish(&mut SessionOutput::default());

@@ -37,14 +37,14 @@ pub(super) struct TrackedVehicle {
     pub(super) is_gone: bool,
     pub(super) requests: Requests,
     pub(super) found_s: f64,
-    pub(super) heard_s: f64,
+    pub(super) received_s: f64,
     pub(super) link_lost: bool,
     pub(super) set_up_tried: bool,
     /// The reason why the motors cannot be assessed, if there is one.
     pub(super) refused: Option<Reason>,
     /// The flight so far: parameters that arrive later may change motors or limits.
     pub(super) history: History,
-    slowed_told_s: Option<f64>,
+    slowed_reported_s: Option<f64>,
     pub(super) watch: Option<AssessedVehicle>,
     pub(super) received: u64,
     pub(super) missed: u64,
@@ -100,12 +100,12 @@ impl TrackedVehicle {
             is_gone: false,
             requests: Requests::new(),
             found_s: now_s,
-            heard_s: now_s,
+            received_s: now_s,
             link_lost: false,
             set_up_tried: false,
             refused: None,
             history: History::new(history),
-            slowed_told_s: None,
+            slowed_reported_s: None,
             watch: None,
             received: 0,
             missed: 0,
@@ -165,9 +165,9 @@ impl TrackedVehicle {
     /// The rate of the motor commands, if a station reduced it and a report is due.
     pub(super) fn slowed_hz(&mut self, now_s: f64) -> Option<f64> {
         let rate_hz = self.requests.take_slowed_hz()?;
-        let is_due = (self.slowed_told_s).is_none_or(|told_s| now_s - told_s >= TELL_SLOWED_S);
+        let is_due = (self.slowed_reported_s).is_none_or(|told_s| now_s - told_s >= TELL_SLOWED_S);
         is_due.then(|| {
-            self.slowed_told_s = Some(now_s);
+            self.slowed_reported_s = Some(now_s);
             rate_hz
         })
     }
@@ -181,7 +181,7 @@ impl TrackedVehicle {
         self.link_lost || self.is_gone
     }
 
-    pub(super) fn hear(&mut self, now_s: f64, out: &mut SessionOutput) {
+    pub(super) fn take_message(&mut self, now_s: f64, out: &mut SessionOutput) {
         self.is_gone = false;
         if self.link_lost {
             self.link_lost = false;
@@ -193,10 +193,10 @@ impl TrackedVehicle {
             }
             out.events.push(Event::Back {
                 what: SilentSource::Link,
-                after_s: now_s - self.heard_s,
+                after_s: now_s - self.received_s,
             });
         }
-        self.heard_s = now_s;
+        self.received_s = now_s;
     }
 
     /// Creates a monitor as soon as the motors are known, and replaces it when more is known about them; the new
@@ -291,7 +291,7 @@ impl TrackedVehicle {
 
     /// Reports a silent link and missing motor commands.
     pub(super) fn listen(&mut self, now_s: f64, out: &mut SessionOutput) {
-        if !self.link_lost && now_s - self.heard_s >= SILENT_S {
+        if !self.link_lost && now_s - self.received_s >= SILENT_S {
             self.link_lost = true;
             out.events.push(Event::Lost {
                 what: SilentSource::Link,
@@ -401,7 +401,7 @@ impl AssessedVehicle {
             let update = self.push(received);
             self.level = update.level;
             self.latest = Some(update);
-            tell(self.assessor.ended(), out);
+            report(self.assessor.ended(), out);
         }
         self.is_flying = !flown.is_empty();
         self.raised_notice();
@@ -419,7 +419,7 @@ impl AssessedVehicle {
         if !std::mem::take(&mut self.is_flying) {
             return None;
         }
-        tell(self.assessor.end_findings(), out);
+        report(self.assessor.end_findings(), out);
         let t_s = self.latest.map(|update| update.t_s);
         let seen = self.assessor.finish();
         let level_seen = match seen.verdict {
@@ -441,7 +441,7 @@ impl AssessedVehicle {
     }
 }
 
-pub(super) fn tell(ended: &[Finding], out: &mut SessionOutput) {
+pub(super) fn report(ended: &[Finding], out: &mut SessionOutput) {
     let findings = ended.iter().cloned();
     out.events
         .extend(findings.map(|finding| Event::Ended { finding }));

@@ -101,7 +101,7 @@ pub(super) struct Candidates(Vec<Candidate>);
 
 impl Candidates {
     /// Counts the motor commands of a candidate.
-    pub(super) fn hear(&mut self, source: Source, packet: &Packet<'_>) {
+    pub(super) fn take_message(&mut self, source: Source, packet: &Packet<'_>) {
         if packet.id != SERVO_OUTPUT_RAW || packet.component != 1 {
             return;
         }

@@ -31,15 +31,15 @@ pub(super) struct WatchSender {
     /// Whether this watch sends values and texts even if another watch sends them.
     insists: bool,
     other: Option<OtherWatch>,
-    told: Option<(f64, bool)>,
-    has_told_risk: bool,
+    reported: Option<(f64, bool)>,
+    has_reported_risk: bool,
     sent: VecDeque<Vec<u8>>,
     /// The bits of each recent FR_RISK of this watch or another one, with the time.
     values: VecDeque<(f64, u32)>,
     /// Texts that are sent unless the other watch sends them first.
     waiting: VecDeque<DelayedText>,
     /// The topics of recent texts of others, with the time.
-    heard: VecDeque<(f64, String)>,
+    received: VecDeque<(f64, String)>,
 }
 
 /// A delayed text, which another watch should send.
@@ -53,7 +53,7 @@ struct DelayedText {
 /// Another watch of the same vehicle.
 struct OtherWatch {
     component: u8,
-    heard_s: f64,
+    received_s: f64,
     /// Whether it has reported its running time. If not, only its values were received.
     has_age: bool,
     goes_first: bool,
@@ -65,12 +65,12 @@ impl WatchSender {
             sender,
             insists,
             other: None,
-            told: None,
-            has_told_risk: false,
+            reported: None,
+            has_reported_risk: false,
             sent: VecDeque::new(),
             values: VecDeque::new(),
             waiting: VecDeque::new(),
-            heard: VecDeque::new(),
+            received: VecDeque::new(),
         }
     }
 
@@ -81,7 +81,7 @@ impl WatchSender {
 
     /// Returns whether this watch sends values and texts: it has a sender, and it insists or no other watch has
     /// precedence.
-    pub(super) fn speaks(&self) -> bool {
+    pub(super) fn is_sending(&self) -> bool {
         let yields = self.other.as_ref().is_some_and(|other| other.goes_first);
         self.sender.is_some() && (self.insists || !yields)
     }
@@ -105,14 +105,14 @@ impl WatchSender {
         message: &MavMessage,
         out: &mut SessionOutput,
     ) {
-        if !self.speaks() {
+        if !self.is_sending() {
             return;
         }
         if let MavMessage::NAMED_VALUE_FLOAT(value) = message {
-            self.has_told_risk = true;
+            self.has_reported_risk = true;
             self.keep_value(now_s, value.value);
         }
-        self.utter(to, message, out);
+        self.send_message(to, message, out);
     }
 
     /// Sends a text. If another watch has precedence, the text is delayed, and dropped if the other watch sends a text on the
@@ -124,15 +124,15 @@ impl WatchSender {
         message: &MavMessage,
         out: &mut SessionOutput,
     ) {
-        if self.speaks() {
-            self.utter(to, message, out);
+        if self.is_sending() {
+            self.send_message(to, message, out);
             return;
         }
         let topic = voice::topic(message);
-        let is_heard = |(heard_s, heard): &(f64, String)| {
-            now_s - heard_s <= TEXT_HEARD_S && topic.as_ref() == Some(heard)
+        let is_heard = |(received_s, received): &(f64, String)| {
+            now_s - received_s <= TEXT_HEARD_S && topic.as_ref() == Some(received)
         };
-        if self.sender.is_none() || self.heard.iter().any(is_heard) {
+        if self.sender.is_none() || self.received.iter().any(is_heard) {
             return;
         }
         self.waiting.truncate(TEXTS - 1);
@@ -144,7 +144,7 @@ impl WatchSender {
         });
     }
 
-    fn utter(&mut self, to: (Version, u8), message: &MavMessage, out: &mut SessionOutput) {
+    fn send_message(&mut self, to: (Version, u8), message: &MavMessage, out: &mut SessionOutput) {
         self.ask(to, message, out);
         if let Some(packet) = out.packets.last() {
             self.sent.truncate(ECHOES - 1);
@@ -160,7 +160,7 @@ impl WatchSender {
     /// Processes a packet of another watch of the vehicle. The watch that has been running longer has precedence. A program on
     /// the autopilot itself also has precedence over this watch, as does a sender that reports no running time and was
     /// received before this watch sent a risk. An autopilot that `echoes` repeats the values of others as its own.
-    pub(super) fn hear(
+    pub(super) fn take_message(
         &mut self,
         now_s: f64,
         packet: &Packet<'_>,
@@ -173,8 +173,8 @@ impl WatchSender {
         if let Some(topic) = voice::topic_of(packet) {
             self.waiting
                 .retain(|waits| waits.topic.as_ref() != Some(&topic));
-            self.heard.truncate(TEXTS - 1);
-            self.heard.push_front((now_s, topic));
+            self.received.truncate(TEXTS - 1);
+            self.received.push_front((now_s, topic));
             return;
         }
         let age_s = voice::age_of(packet);
@@ -203,7 +203,7 @@ impl WatchSender {
             (Some(age_s), _) => age_s > now_s,
             (None, Some(known)) if known.has_age => known.goes_first,
             (None, Some(known)) => known.goes_first || packet.component == 1,
-            (None, None) => packet.component == 1 || !self.has_told_risk,
+            (None, None) => packet.component == 1 || !self.has_reported_risk,
         };
         // If any other watch has precedence, this one does not send.
         if self.other.as_ref().is_some_and(|other| {
@@ -213,11 +213,11 @@ impl WatchSender {
         }
         self.other = Some(OtherWatch {
             component: packet.component,
-            heard_s: now_s,
+            received_s: now_s,
             has_age: age_s.is_some() || known.is_some_and(|known| known.has_age),
             goes_first,
         });
-        self.tell(now_s, packet.system, out);
+        self.report(now_s, packet.system, out);
     }
 
     /// Resumes sending if the other watch is gone, and sends the texts that it did not send.
@@ -225,41 +225,41 @@ impl WatchSender {
         // The texts are sorted by their time.
         while (self.waiting.front()).is_some_and(|text| now_s >= text.due_s) {
             if let Some(text) = self.waiting.pop_front() {
-                self.utter(text.to, &text.message, out);
+                self.send_message(text.to, &text.message, out);
             }
         }
         if self
             .other
             .as_ref()
-            .is_some_and(|other| now_s - other.heard_s >= GONE_S)
+            .is_some_and(|other| now_s - other.received_s >= GONE_S)
         {
             self.other = None;
-            self.tell(now_s, system, out);
+            self.report(now_s, system, out);
         }
     }
 
     /// Forgets other watches and texts, because another vehicle is followed from now on.
     pub(super) fn forget(&mut self) {
         self.other = None;
-        self.told = None;
-        self.has_told_risk = false;
+        self.reported = None;
+        self.has_reported_risk = false;
         self.values.clear();
         self.waiting.clear();
-        self.heard.clear();
+        self.received.clear();
     }
 
-    fn tell(&mut self, now_s: f64, system: u8, out: &mut SessionOutput) {
-        let speaks = self.speaks();
-        let is_news = match self.told {
+    fn report(&mut self, now_s: f64, system: u8, out: &mut SessionOutput) {
+        let is_sending = self.is_sending();
+        let is_news = match self.reported {
             None => true,
-            Some((told_s, told)) => told != speaks && now_s - told_s >= TELL_S,
+            Some((told_s, reported)) => reported != is_sending && now_s - told_s >= TELL_S,
         };
         if is_news {
-            self.told = Some((now_s, speaks));
+            self.reported = Some((now_s, is_sending));
             out.events.push(Event::AnotherWatch {
                 system,
                 component: self.other.as_ref().map(|other| other.component),
-                speaks,
+                is_sending,
             });
         }
     }

@@ -5,10 +5,10 @@ use crate::ReadError;
 
 const HELP_PULSES: &str = "name columns of fractions from 0 to 1 `motor1`..; divide percent by 100 first; for DShot see docs/flight-csv.md";
 /// The smallest step between motor commands that is recognised as milliseconds.
-const LEAST_STEP_MS: f64 = 2.0;
-const LEAST_STEPS: usize = 5;
+const MIN_STEP_MS: f64 = 2.0;
+const MIN_STEPS: usize = 5;
 /// The smallest step between motor commands that is recognised as microseconds: 1 kHz.
-const LEAST_STEP_US: f64 = 1000.0;
+const MIN_STEP_US: f64 = 1000.0;
 
 impl RowCollector {
     /// The reason why the file is refused; `None` if it is accepted. If this crate wrote the file (`is_ours`), only
@@ -55,9 +55,9 @@ impl RowCollector {
         steps.sort_by(f64::total_cmp);
         let middle = *steps.get(steps.len() / 2)?;
         let (line, from, to) = self.first_step?;
-        (self.is_whole && steps.len() >= LEAST_STEPS && middle >= LEAST_STEP_MS).then(|| {
+        (self.is_whole && steps.len() >= MIN_STEPS && middle >= MIN_STEP_MS).then(|| {
             let text = format!("`t_s` jumps from {from} to {to} in one row, but is in seconds");
-            let help = match middle < LEAST_STEP_US {
+            let help = match middle < MIN_STEP_US {
                 true => "divide milliseconds by 1000; rows that are seconds apart are too few for an assessment",
                 false => "divide microseconds by 1000000",
             };
@@ -70,7 +70,7 @@ impl RowCollector {
     /// windows are longer than the resolution of such a clock.
     fn coarse(&self) -> Option<ReadError> {
         let (line, t_s) = self.first_repeated?;
-        (self.is_whole && self.repeated >= LEAST_STEPS).then(|| {
+        (self.is_whole && self.repeated >= MIN_STEPS).then(|| {
             let text = format!(
                 "`t_s` is {t_s} as in the row before, and a whole number in every row: the clock is too coarse"
             );

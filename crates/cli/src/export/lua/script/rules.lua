@@ -22,7 +22,7 @@ end
 -- @if maxima
 
 local function fire(rule, term, strength)
-  if strength < LEAST_STRENGTH then
+  if strength < MIN_STRENGTH then
     strength = 0.0
   end
   if strength > strengths[term] then
@@ -37,7 +37,7 @@ end
 -- @if sums
 
 local function add(rule, term, strength)
-  if strength < LEAST_STRENGTH then
+  if strength < MIN_STRENGTH then
     strength = 0.0
   end
   strengths[term] = strengths[term] + strength

@@ -8,7 +8,7 @@ impl Bench<'_> {
     fn beat_as(&mut self, mavtype: MavType, autopilot: MavAutopilot) {
         let times = if self.session.view().is_none() { 3 } else { 1 };
         for _ in 0..times {
-            self.hear(&MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+            self.take_message(&MavMessage::HEARTBEAT(HEARTBEAT_DATA {
                 custom_mode: 0,
                 mavtype,
                 autopilot,
@@ -20,7 +20,7 @@ impl Bench<'_> {
     }
 
     fn pulses(&mut self, t_s: f64, port: u8, last_four: u16, first_two: u16) {
-        self.hear(&MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {
+        self.take_message(&MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {
             time_usec: (t_s * 1e6) as u32,
             port,
             servo1_raw: first_two,
@@ -35,7 +35,7 @@ impl Bench<'_> {
 
     /// Sends the bytes of an integer in place of a float, as PX4 does.
     fn integer(&mut self, name: &str, value: i32) {
-        self.hear(&MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
+        self.take_message(&MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
             param_value: f32::from_bits(value as u32),
             param_count: 900,
             param_index: u16::MAX,
@@ -50,7 +50,7 @@ impl Bench<'_> {
 
     fn is_asked_for(&self, name: &str) -> bool {
         self.count_sent(|message| {
-            matches!(message, MavMessage::PARAM_REQUEST_READ(asked) if asked.param_id.to_str() == Ok(name))
+            matches!(message, MavMessage::PARAM_REQUEST_READ(requested) if requested.param_id.to_str() == Ok(name))
         }) > 0
     }
 }

@@ -12,7 +12,7 @@ impl Bench<'_> {
     fn px4_beat(&mut self) {
         let times = if self.session.view().is_none() { 3 } else { 1 };
         for _ in 0..times {
-            self.hear(&MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+            self.take_message(&MavMessage::HEARTBEAT(HEARTBEAT_DATA {
                 custom_mode: 0,
                 mavtype: MavType::MAV_TYPE_QUADROTOR,
                 autopilot: MavAutopilot::MAV_AUTOPILOT_PX4,
@@ -24,7 +24,7 @@ impl Bench<'_> {
     }
 
     fn px4_state(&mut self, landed_state: MavLandedState) {
-        self.hear(&MavMessage::EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA {
+        self.take_message(&MavMessage::EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA {
             landed_state,
             ..EXTENDED_SYS_STATE_DATA::default()
         }));
@@ -51,7 +51,7 @@ impl Bench<'_> {
             let wiggle = (i % 5) as u16;
             let [one, two, three, four] = pulses;
             let before = self.sent.len();
-            self.hear(&servo(t_s, [one + wiggle, two, three - wiggle, four]));
+            self.take_message(&servo(t_s, [one + wiggle, two, three - wiggle, four]));
             each(self, before);
             self.wait(0.03);
         }
@@ -62,7 +62,7 @@ impl Bench<'_> {
     }
 
     fn px4_integer(&mut self, name: &str, value: i32) {
-        self.hear(&MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
+        self.take_message(&MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
             param_value: f32::from_bits(value as u32),
             param_count: 900,
             param_index: u16::MAX,
@@ -169,12 +169,12 @@ fn a_parameter_that_the_vehicle_does_not_have_is_not_waited_for() {
     bench.px4_lacks(&coefficients());
     bench.wait(0.1);
     assert_eq!(bench.setups()[0].assumed, ["commands from 1000 to 2000 us"]);
-    let asked = |bench: &Bench<'_>| {
+    let requested = |bench: &Bench<'_>| {
         bench.count_sent(|message| matches!(message, MavMessage::PARAM_REQUEST_READ(_)))
     };
-    let before = asked(&bench);
+    let before = requested(&bench);
     bench.wait_beating(2, true);
-    assert_eq!(asked(&bench), before, "nothing is asked for again");
+    assert_eq!(requested(&bench), before, "nothing is asked for again");
 }
 
 #[test]
@@ -245,7 +245,7 @@ fn changed_limits_apply_from_the_next_flight() {
     assert_eq!(bench.count(|event| matches!(event, Event::Level { .. })), 0);
     bench.wait_beating_px4(1);
     assert_eq!(range(&bench), (1000.0, 2000.0), "the flight is not over");
-    bench.hear(&servo(120.0, [1000; 4]));
+    bench.take_message(&servo(120.0, [1000; 4]));
     bench.wait_beating_px4(1);
     assert_eq!(range(&bench), (1000.0, 1402.0));
     bench.px4_integer("PWM_MAIN_MIN1", 900);
@@ -350,7 +350,7 @@ fn a_value_forwarded_by_px4_is_not_taken_for_another_watch() {
         risk = new.or(risk);
         if let Some(was) = before.filter(|_| new.is_some()) {
             echoes += 1;
-            bench.hear(&value(voice::RISK, was, 90_000 + echoes));
+            bench.take_message(&value(voice::RISK, was, 90_000 + echoes));
         }
     });
     assert!(echoes > 30, "{echoes}");
@@ -358,7 +358,7 @@ fn a_value_forwarded_by_px4_is_not_taken_for_another_watch() {
     assert_eq!(bench.count(other), 0);
     // A module on the vehicle that sends a risk of its own counts as another watch.
     bench.px4_fly_and(130.0, 3.0, [1500; 4], |bench, _| {
-        bench.hear(&value(voice::RISK, 0.123, 1));
+        bench.take_message(&value(voice::RISK, 0.123, 1));
     });
     assert_eq!(bench.count(other), 1);
 }
@@ -376,18 +376,18 @@ fn a_warning_is_sent_if_another_watch_does_not_warn() {
         let texts = |bench: &Bench<'_>| {
             bench.count_sent(|message| matches!(message, MavMessage::STATUSTEXT(_)))
         };
-        let mut told = 0;
+        let mut reported = 0;
         bench.px4_fly_and(100.0, 20.0, [1000, 2000, 1000, 2000], |bench, _| {
-            bench.hear(&value(voice::RISK, 0.123, 1));
+            bench.take_message(&value(voice::RISK, 0.123, 1));
             let levels = bench.events.iter().filter_map(|event| match event {
                 Event::Level { level, .. } => *level,
                 _ => None,
             });
             let levels: Vec<Level> = levels.collect();
-            if warns && levels.len() > told {
-                let text = format!("FLAGRED: {} risk 99 %", levels[told]);
-                bench.hear(&voice::status(levels[told], &text));
-                told = levels.len();
+            if warns && levels.len() > reported {
+                let text = format!("FLAGRED: {} risk 99 %", levels[reported]);
+                bench.take_message(&voice::status(levels[reported], &text));
+                reported = levels.len();
             }
         });
         let levels = bench.count(|event| matches!(event, Event::Level { .. }));
@@ -431,11 +431,11 @@ fn cut(in_the_air: impl Fn(&mut Bench<'_>)) -> (Vec<String>, Verdict) {
         if i % 25 == 0 {
             in_the_air(&mut bench);
         }
-        bench.hear(&servo(130.0 + f64::from(i) / 25.0, [1030; 4]));
+        bench.take_message(&servo(130.0 + f64::from(i) / 25.0, [1030; 4]));
         bench.wait(0.03);
     }
     bench.px4_state(MavLandedState::MAV_LANDED_STATE_ON_GROUND);
-    bench.hear(&servo(136.0, [1030; 4]));
+    bench.take_message(&servo(136.0, [1030; 4]));
     let texts = bench.events.iter().rev().filter_map(|event| match event {
         Event::Level { text, .. } => Some(text.clone()),
         _ => None,
@@ -460,7 +460,7 @@ fn the_landed_state_overrides_idle_motors() {
 fn an_old_landed_state_and_stopped_motors_are_not_a_fall() {
     let silent = cut(|bench| bench.px4_beat());
     let killed = cut(|bench| {
-        bench.hear(&MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+        bench.take_message(&MavMessage::HEARTBEAT(HEARTBEAT_DATA {
             custom_mode: 0,
             mavtype: MavType::MAV_TYPE_QUADROTOR,
             autopilot: MavAutopilot::MAV_AUTOPILOT_PX4,

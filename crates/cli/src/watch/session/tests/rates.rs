@@ -36,14 +36,14 @@ impl Bench<'_> {
                 self.beat(true);
             }
             if i % (50 / motors_hz) == 0 {
-                self.hear(&servo(t_s, [1500; 4]));
+                self.take_message(&servo(t_s, [1500; 4]));
             }
             if i % (50 / others_hz) == 0 {
-                self.hear(&MavMessage::ATTITUDE(ATTITUDE_DATA {
+                self.take_message(&MavMessage::ATTITUDE(ATTITUDE_DATA {
                     time_boot_ms: (t_s * 1e3) as u32,
                     ..ATTITUDE_DATA::default()
                 }));
-                self.hear(&MavMessage::EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA {
+                self.take_message(&MavMessage::EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA {
                     landed_state: MavLandedState::MAV_LANDED_STATE_IN_AIR,
                     ..EXTENDED_SYS_STATE_DATA::default()
                 }));
@@ -74,7 +74,7 @@ fn rates_are_requested_until_they_arrive_also_by_the_old_message() {
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);
     bench.wait(1.2);
-    bench.hear(&accepted(1, (1, 191), MavResult::MAV_RESULT_UNSUPPORTED));
+    bench.take_message(&accepted(1, (1, 191), MavResult::MAV_RESULT_UNSUPPORTED));
     bench.wait(0.1);
     assert_eq!(asks(&bench), (3, 3));
 }
@@ -120,8 +120,8 @@ fn the_station_that_slows_the_motor_commands_is_named_once() {
     bench.all_parameters();
     bench.stream(10.0, 10.0, 25, 5);
     // An answer to another station changes nothing by itself, and the refusal in it does not concern this watch.
-    bench.hear(&accepted(1, (255, 190), MavResult::MAV_RESULT_UNSUPPORTED));
-    bench.hear(&accepted(1, (255, 190), MavResult::MAV_RESULT_ACCEPTED));
+    bench.take_message(&accepted(1, (255, 190), MavResult::MAV_RESULT_UNSUPPORTED));
+    bench.take_message(&accepted(1, (255, 190), MavResult::MAV_RESULT_ACCEPTED));
     bench.stream(20.0, 5.0, 25, 5);
     assert_eq!(asks(&bench), (0, 0));
     let slowed = |bench: &Bench<'_>| {
@@ -138,10 +138,10 @@ fn the_station_that_slows_the_motor_commands_is_named_once() {
     };
     assert_eq!(slowed(&bench), []);
     bench.stream(25.0, 12.0, 1, 5);
-    let told = slowed(&bench);
+    let reported = slowed(&bench);
     assert!(
-        matches!(told[..], [(Some(255), Some(190), rate_hz)] if rate_hz < 12.5),
-        "{told:?}"
+        matches!(reported[..], [(Some(255), Some(190), rate_hz)] if rate_hz < 12.5),
+        "{reported:?}"
     );
     assert!(asks(&bench).0 > 0, "the rate is asked for again");
     let texts = bench.sent.iter().filter_map(|message| match message {
@@ -164,15 +164,15 @@ fn the_reported_rate_is_measured_after_the_drop() {
         bench.beat(true);
         bench.all_parameters();
         bench.stream(10.0, 10.0, 25, 5);
-        bench.hear(&accepted(1, (255, 190), MavResult::MAV_RESULT_ACCEPTED));
+        bench.take_message(&accepted(1, (255, 190), MavResult::MAV_RESULT_ACCEPTED));
         bench.stream(20.0, 4.0 + f64::from(tenths) / 10.0, 25, 5);
         bench.stream(26.0, 6.5, 2, 5);
-        let told = bench.events.iter().find_map(|event| match event {
+        let reported = bench.events.iter().find_map(|event| match event {
             Event::Slowed { rate_hz, .. } => Some(*rate_hz),
             _ => None,
         });
-        let told = told.unwrap_or_else(|| panic!("{tenths}: not told within 6.5 s"));
-        assert!((1.4..2.6).contains(&told), "{tenths}: {told} Hz");
+        let reported = reported.unwrap_or_else(|| panic!("{tenths}: not told within 6.5 s"));
+        assert!((1.4..2.6).contains(&reported), "{tenths}: {reported} Hz");
         assert!(asks(&bench).0 > 0, "{tenths}: the rate is asked for again");
     }
 }

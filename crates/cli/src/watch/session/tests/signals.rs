@@ -35,7 +35,7 @@ impl<'e> Bench<'e> {
     /// Hovers for 30 s with a battery level once a second.
     fn hover_with(&mut self, from_s: f64, remaining_pct: i8) {
         for second in 0..30 {
-            self.hear(&battery(remaining_pct));
+            self.take_message(&battery(remaining_pct));
             self.hover(from_s + f64::from(second), 1.0, 1500);
         }
     }

@@ -35,7 +35,7 @@ impl Bench<'_> {
         self.session.view().map(|view| view.system)
     }
 
-    fn doubts_told(&self) -> Vec<UntrustedPacket> {
+    fn reported_doubts(&self) -> Vec<UntrustedPacket> {
         let doubts = self.events.iter().filter_map(|event| match event {
             Event::Doubt { what, .. } => Some(*what),
             _ => None,
@@ -112,7 +112,7 @@ fn a_second_sender_is_reported_once_and_ignored_until_the_first_is_silent() {
         liar.say(&mut bench, &servo(20.0 + f64::from(i) * 0.04, [1999; 4]));
     }
     bench.hover(20.0, 10.0, 1500);
-    assert_eq!(bench.doubts_told(), [UntrustedPacket::SecondSender]);
+    assert_eq!(bench.reported_doubts(), [UntrustedPacket::SecondSender]);
     assert_eq!(bench.session.doubts().second_sender, 300);
     assert_eq!(bench.count(|event| matches!(event, Event::Over { .. })), 0);
     assert_eq!(bench.count(|event| matches!(event, Event::Level { .. })), 0);
@@ -201,7 +201,7 @@ fn parameters_of_other_components_are_ignored() {
     bench.all_parameters();
     bench.wait(0.1);
     assert_eq!(bench.setups()[0].range.high, 2000.0);
-    assert_eq!(bench.doubts_told(), [UntrustedPacket::OtherComponent]);
+    assert_eq!(bench.reported_doubts(), [UntrustedPacket::OtherComponent]);
     assert_eq!(bench.session.doubts().other_component, 3);
 }
 
@@ -216,15 +216,15 @@ fn a_clock_that_jumps_once_is_not_a_reboot() {
     bench.hover(100.0, 10.0, 1500);
     for i in 0..100 {
         let t_s = 110.0 + f64::from(i) * 0.04;
-        bench.hear(&servo(t_s, [1500; 4]));
+        bench.take_message(&servo(t_s, [1500; 4]));
         for late_s in [0.0, 0.02] {
-            bench.hear(&servo(t_s - 100.0 + late_s, [1999; 4]));
+            bench.take_message(&servo(t_s - 100.0 + late_s, [1999; 4]));
         }
         bench.wait(0.04);
     }
     assert_eq!(bench.count(|event| matches!(event, Event::Rebooted)), 0);
     assert_eq!(bench.count(|event| matches!(event, Event::Level { .. })), 0);
-    assert_eq!(bench.doubts_told(), [UntrustedPacket::ClockJump]);
+    assert_eq!(bench.reported_doubts(), [UntrustedPacket::ClockJump]);
     assert_eq!(bench.session.doubts().clock_jumps, 200);
     let latest = bench.session.view().unwrap().latest.unwrap();
     assert!(latest.risk.is_ok() && latest.t_s > 113.0, "{latest:?}");
@@ -232,7 +232,7 @@ fn a_clock_that_jumps_once_is_not_a_reboot() {
     // A vehicle that reboots is silent before it sends again.
     bench.wait_beating(3, true);
     for i in 0..5 {
-        bench.hear(&servo(1.0 + f64::from(i) * 0.04, [1000; 4]));
+        bench.take_message(&servo(1.0 + f64::from(i) * 0.04, [1000; 4]));
         bench.wait(0.04);
     }
     assert_eq!(bench.count(|event| matches!(event, Event::Rebooted)), 1);
@@ -281,10 +281,10 @@ fn the_older_of_two_watches_sends_and_the_younger_takes_over() {
     assert!(bench.count(|event| matches!(event, Event::Level { .. })) > 0);
     assert_eq!(said_by(&bench), before, "it sends no values");
     assert!(warned(&bench) > 0, "the older one did not warn");
-    let told = |component: Option<u8>, speaks: bool| move |event: &Event| matches!(event, Event::AnotherWatch { component: c, speaks: s, .. } if (*c, *s) == (component, speaks));
-    assert_eq!(bench.count(told(Some(191), false)), 1);
+    let reported = |component: Option<u8>, is_sending: bool| move |event: &Event| matches!(event, Event::AnotherWatch { component: c, is_sending: s, .. } if (*c, *s) == (component, is_sending));
+    assert_eq!(bench.count(reported(Some(191), false)), 1);
     bench.hover(20.0, 10.0, 1950);
-    assert_eq!(bench.count(told(None, true)), 1);
+    assert_eq!(bench.count(reported(None, true)), 1);
     assert!(said_by(&bench) > before + 10);
 
     // Another watch with a shorter running time does not silence this one.
@@ -303,12 +303,12 @@ fn a_risk_sent_by_the_autopilot_is_repeated_only_on_request() {
         bench.beat(false);
         bench.all_parameters();
         for i in 0..10_u32 {
-            bench.hear(&risk());
+            bench.take_message(&risk());
             bench.hover(10.0 + f64::from(i), 1.0, 1950);
         }
         assert_eq!(said_by(&bench) > 0, insists);
         assert!(warned(&bench) > 0, "a warning is sent in any case");
-        assert_eq!(bench.count(|event| matches!(event, Event::AnotherWatch { component: Some(1), speaks, .. } if *speaks == insists)), 1);
+        assert_eq!(bench.count(|event| matches!(event, Event::AnotherWatch { component: Some(1), is_sending, .. } if *is_sending == insists)), 1);
     }
 }
 
