@@ -117,7 +117,7 @@ pub fn published_type2() -> Model {
                 MembershipFunction::Triangle { left, peak, right } => {
                     triangle(left - by, peak, right + by)
                 }
-                // The other programs have trapezoids only.
+                // The other programs have only trapezoids.
                 MembershipFunction::RightShoulder { foot, top } => MembershipFunction::Trapezoid {
                     left: foot - by,
                     left_top: top,

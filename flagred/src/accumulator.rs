@@ -171,7 +171,7 @@ mod tests {
 
     #[test]
     fn the_elevated_risk_does_not_depend_on_the_sample_rate() {
-        // A risk that swings slowly, seen at 1, 10, 25 and 400 Hz.
+        // A risk that swings slowly, sampled at 1, 10, 25 and 400 Hz.
         let run = |rate: u32| {
             let (mut accumulator, mut risks) = (Accumulator::new(SETTINGS), Window::new(5.0));
             let dt = 1.0 / f64::from(rate);

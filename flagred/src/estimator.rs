@@ -434,7 +434,7 @@ mod tests {
         let with = |battery: f64| [&known[..], &[battery]].concat();
         let risk = default.at(&known);
         assert!(risk.is_some());
-        // Values out of range do not matter either: the risk does not depend on this input.
+        // The risk does not depend on this input, so unknown values and values outside its range do not matter.
         for level in [80.0, f64::NAN, 250.0] {
             assert_eq!(motors.at(&with(level)), risk, "{level}");
             let plan = motors.plan().unwrap();

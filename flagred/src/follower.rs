@@ -346,7 +346,8 @@ impl Follower {
         self.alert.level().max(noticed).max(doubted)
     }
 
-    /// After an alarm, keeps the level above GOOD until the motors have worked as before the alarm for `clear_after_s`.
+    /// After an alarm, keeps the level above GOOD until the motors have worked for `clear_after_s` as they did before
+    /// the alarm.
     fn doubt(&mut self, t_s: f64) {
         let is_alarm = self.alert.level() > Level::Good;
         let clear_after_s = self.settings.verdict.clear_after_s;

@@ -73,7 +73,8 @@ impl Moments {
         counted: impl Fn(f64) -> f64,
     ) -> Moments {
         let mut all = Moments::EMPTY;
-        // Relative to the first value, so that the mean of equal values is exact and their standard deviation is 0.
+        // The values are taken relative to the first one, so that the mean of equal values is exact and their standard
+        // deviation is 0.
         let Some(first) = values.clone().next().map(&counted) else {
             return all;
         };

@@ -107,7 +107,7 @@ pub enum Unknown {
         /// The first motor without a command, counted from 0.
         motor: usize,
     },
-    /// The command of a motor is so far outside [0, 1] that it has another unit.
+    /// The command of a motor is so far outside [0, 1] that it must be in another unit.
     CommandOutside {
         /// The first motor with such a command, counted from 0.
         motor: usize,

@@ -27,7 +27,7 @@ impl SampledMean {
         let mut before = None;
         for (weight, product) in values.filter(|(weight, _)| *weight > 0.0) {
             let value = product / weight;
-            // Each difference counts for the value after it.
+            // Each difference is weighted like the later of its two values.
             let step = weight * (value - before.replace(value).unwrap_or(value));
             squares += step * step / 2.0;
             total += weight;
@@ -38,7 +38,7 @@ impl SampledMean {
         let half_width = match count {
             1 => f64::INFINITY,
             _ => {
-                // Successive differences overlap, so that they have about two thirds of the degrees of freedom.
+                // Successive differences overlap, so they have about two thirds of the degrees of freedom.
                 let quantile = quantile(steps * 2.0 / 3.0);
                 quantile * libm::sqrt(squares * (steps + 1.0) / steps) / total
             }

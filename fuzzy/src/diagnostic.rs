@@ -297,7 +297,7 @@ pub fn nearest<'a>(
     // The maximum length of a word that is compared: the time of a comparison grows with the
     // product of the lengths, and longer words are not typing errors.
     const LONGEST: usize = 64;
-    // Only ASCII letters, because the tables of all others take 20 kB in a browser.
+    // Folds only ASCII letters, because tables for the other letters would add 20 kB in a browser.
     let fold = |s: &str| {
         s.chars()
             .map(|c| c.to_ascii_lowercase())

@@ -74,7 +74,7 @@ fn plateaus_steps_and_infinity() {
         // `w z / w` rounds.
         (value(&Engine::new(&model).unwrap(), w) * 1e12).round() / 1e12
     };
-    // The end of the slope, not the middle of the plateau.
+    // The value is the end of the slope, not the middle of the plateau.
     assert_eq!(at("right_shoulder: [2, 8]", 1.0), 8.0);
     assert_eq!(at("left_shoulder: [2, 8]", 1.0), 2.0);
     let steps = "piecewise: [[1, 0.2], [2, 0.2], [4, 0.6], [6, 0.6], [6, 0.8], [9, 0.8]]";
@@ -84,8 +84,8 @@ fn plateaus_steps_and_infinity() {
     assert_eq!(at(steps, 0.6), 4.0);
     assert_eq!(at(steps, 0.7), 6.0);
     assert_eq!(at(steps, 0.9), 6.0);
-    // A sigmoid never reaches 1, which gives the end of the range. For degrees near 1 the value may be outside the
-    // range.
+    // A sigmoid never reaches the degree 1, so a firing strength of 1 gives the end of the range. For strengths near 1
+    // the value may be outside the range.
     assert_eq!(at("sigmoid: {inflection: 5, slope: 1}", 1.0), 10.0);
     assert_eq!(at("sigmoid: {inflection: 5, slope: -1}", 1.0), 0.0);
     assert!(at("sigmoid: {inflection: 5, slope: 1}", 0.9999) > 14.0);

@@ -106,7 +106,8 @@ fn centroids_and_bisectors_are_those_of_many_samples() {
             for aggregation in AGGREGATIONS {
                 model.operators.implication = implication;
                 model.operators.aggregation = aggregation;
-                // With the drastic norm, only a point of a curve remains, or the values that round to it.
+                // With the drastic implication, only the peak of a curved term remains (and positions whose degree
+                // rounds to 1), so it is not compared.
                 if implication == Implication::Drastic && terms == CURVED {
                     continue;
                 }

@@ -172,7 +172,7 @@ fn tags_duplicates_and_numbers_are_handled() {
     let ours = |text: &str| text.parse::<Model>().map(|model| model.name);
     let theirs = |text: &str| serde_yaml::from_str::<Model>(text).map(|model| model.name);
 
-    // A name that looks like a number is read as written here; serde passes it as a number.
+    // Here, a name that looks like a number is read as written; serde passes it as a number.
     let number = rule_set("1.50");
     assert_eq!(
         (ours(&number).unwrap(), theirs(&number).unwrap()),
@@ -326,7 +326,8 @@ fn steps_survive_formats_without_null_and_with_sorted_keys() {
     let steps = r#""steps":[{"name":"zero","below":0},{"name":"fine","below":36},{"name":"over"}]"#;
     assert!(json.contains(steps), "{json}");
     assert_eq!(serde_json::from_str::<Model>(&json).unwrap(), model);
-    // With sorted keys, the order of the terms follows from the limits. In a text, this order may be a mistake.
+    // With sorted keys, the order of the terms follows from the limits. In a text, this order is an error, because it
+    // may be a mistake.
     let sorted = json.replace(steps, r#""steps":{"fine":36,"over":null,"zero":0}"#);
     assert_eq!(serde_json::from_str::<Model>(&sorted).unwrap(), model);
     let sorted = text.replace("{zero: 0, fine: 36, over: }", "{fine: 36, over: , zero: 0}");

@@ -249,7 +249,7 @@ pub fn check_texts(said: &WatchOutput, received: &Inbox) {
         .map(|event| {
             let severity = match event["level"].as_str() {
                 Some("GOOD") => 6,
-                // The risk is unknown and an alarm was raised before.
+                // `None`: the risk is unknown, and an alarm was raised before.
                 Some("WARN") | None => 4,
                 _ => 2,
             };

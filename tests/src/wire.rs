@@ -51,7 +51,8 @@ impl Wire {
     /// A TCP connection that is already open.
     pub fn tcp(stream: TcpStream) -> Wire {
         stream.set_nodelay(true).unwrap();
-        // The shortest read time-out is a tick of the kernel: milliseconds for every read.
+        // The stream is non-blocking, because even the shortest read time-out waits for a tick of the kernel, that is,
+        // milliseconds per read.
         stream.set_nonblocking(true).unwrap();
         Wire::Tcp(stream, Vec::new())
     }

@@ -71,7 +71,8 @@ fn csv_has_a_row_for_each_step_of_the_json() {
     let (_, document) = json(STEADY);
     let steps = document["steps"].as_array().unwrap();
     assert_eq!(rows.lines().count(), steps.len());
-    // An input has its own column beside that of the summary; the names are those of the JSON document.
+    // The column of an input begins with `input_`, so that it differs from columns such as `spread`; the names are
+    // those of the JSON document.
     let names: Vec<&str> = head.split(',').collect();
     let step = &steps[800];
     let of_csv = |name: &str| {

@@ -219,7 +219,7 @@ fn an_unknown_flight_state_stays_unknown_in_csv() {
     flight.write_csv(&mut csv).unwrap();
     let again = flagred_flightlog::read(&csv[..], &Options::default()).unwrap();
     assert_eq!((again.in_air, again.commands.len()), (None, 50));
-    // An empty cell changes nothing.
+    // A row with an empty cell has the state of the row before it.
     let csv = "t_s,motor1,in_air\n0,0.5,1\n1,0.5,\n2,0.5,0\n3,0.5,\n";
     let flight = flagred_flightlog::read(csv.as_bytes(), &Options::default()).unwrap();
     let in_air = [0.5, 1.5, 2.5, 3.0].map(|t_s| flight.is_in_air(t_s));

@@ -83,13 +83,14 @@ fn flights_are_compared_step_by_step_and_episode_by_episode() {
             "true_wind"
         ]
     );
-    // 45 s in steps of half a second, including both ends; the manoeuvre is separate.
+    // Each of two flights has 45 s in steps of half a second, including both ends. The manoeuvre is separate.
     assert_eq!(document["steps"], 2 * 91);
     assert_eq!(
         (&document["flights"], &document["left_out"]),
         (&2.into(), &1.into())
     );
-    // The error over a second exceeds the limit from 34.2 to 40.8 s: critical within 5 s from 29.5 s on.
+    // The error over a second exceeds the limit from 34.2 to 40.8 s, so from 29.5 s on a step has a critical error
+    // within 5 s.
     let flagred = estimator(&document, "flagred");
     assert_eq!(flagred["critical"], 23);
     assert!(flagred["auc"].as_f64().unwrap() > 0.9, "{flagred}");
@@ -185,7 +186,7 @@ fn false_alarms_and_alarms_before_upsets_are_counted() {
     );
     assert_eq!(ordinary["share_of_time_on"], 0.0);
     assert!((ordinary["hours"].as_f64().unwrap() - 120.0 / 3600.0).abs() < 1e-4);
-    // From 5 s after take-off to the landing, or to 10 s before the error.
+    // A calm stretch lasts from 5 s after take-off to the landing, or to 10 s before the error.
     let calm = &alarms["calm_stretches"];
     assert_eq!((&calm["flights"], &calm["alarms"]), (&3.into(), &0.into()));
     let calm_s = calm["hours"].as_f64().unwrap() * 3600.0;
@@ -203,7 +204,8 @@ fn false_alarms_and_alarms_before_upsets_are_counted() {
 
     // Steps from 2 s after take-off to 1 s before landing, or to the upset.
     assert_eq!(document["steps"], 2 * 115 + 76);
-    // The error over a second exceeds 5 degrees soon after 40 s: critical within 5 s from about 35.2 s on.
+    // The error over a second exceeds 5 degrees soon after 40 s, so from about 35.2 s on a step has a critical error
+    // within 5 s.
     let critical = flagred["critical"].as_u64().unwrap();
     assert!((10..=12).contains(&critical), "{critical}");
     assert_eq!(flagred["within_flight_flights"], 1);
@@ -235,7 +237,8 @@ fn a_step_is_quiet_until_the_error_is_critical() {
     folder.file("gusts.csv", flight("gusts", true));
     let document = json(&evaluate(&["--json", folder.path().to_str().unwrap()]));
     let flagred = estimator(&document, "flagred");
-    // Critical from 34.2 to 40.8 s: quiet up to 34 s and from 46 s on, or from 51 s on.
+    // The error is critical from 34.2 to 40.8 s. Steps are quiet up to 34 s and from 46 s on (5 s without a critical
+    // error), and onset steps up to 34 s and from 51 s on (10 s without one).
     let steps = |part: &Value| part["cases"].as_u64().unwrap() + part["unknown"].as_u64().unwrap();
     assert_eq!(steps(&flagred["quiet"]), 49 + 19);
     assert_eq!(steps(&flagred["onset"]), 49 + 9);
@@ -369,7 +372,7 @@ fn the_shipped_rules_on_the_simulated_flights() {
             }
         }
     }
-    // The same values from Python (roc_auc_score over the same steps and rows).
+    // Python gives the same values (roc_auc_score over the same steps and rows).
     for (document, name, auc) in [
         (&series, "true_wind", 0.801),
         (&series, "ekf_wind", 0.791),
@@ -434,7 +437,7 @@ fn the_baselines_on_the_real_flights() {
     assert_eq!(flights(&alarms["ordinary_flights"]), 15);
     let calm_hours = alarms["calm_stretches"]["hours"].as_f64().unwrap();
     assert!((calm_hours - 0.61).abs() < 0.01, "{calm_hours}");
-    // The sixth is an attitude failure that appears only in a message.
+    // A sixth upset, an attitude failure, appears only in a message of its log.
     let upsets: usize = document["records"]
         .as_array()
         .unwrap()

@@ -113,7 +113,7 @@ fn faults_and_upsets_are_reported_within_a_second() {
         let late: usize = of().map(|reported| reported.late.len()).sum();
         in_time as f64 / (in_time + late) as f64
     };
-    // A bump is over before it appears in a window of two seconds.
+    // Bumps are not included, because a bump is over before it appears in a window of two seconds.
     let faults = [
         "dead_motor",
         "motor_partial",

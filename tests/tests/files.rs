@@ -434,7 +434,7 @@ fn old_or_new(seed: u64, count: usize) {
         let is_new = now == *new;
         match fault {
             Fault::Kill(_) => {}
-            // Only some pages of the manual are compared, and it may be another page that does not fit.
+            // Only some manual pages are compared, so the page that does not fit on the disk may be another one.
             Fault::FullDisk(_) if is_new && writing.arguments[0] == "man" => {}
             Fault::FullDisk(_) => {
                 assert_eq!(code, if is_new { round.code } else { Some(2) }, "{what}");
@@ -473,7 +473,7 @@ fn a_full_file_system_leaves_the_old_file() {
     for writing in commands(&folder) {
         let file = &writing.files[0];
         if writing.arguments[0] == "man" || writing.arguments[0] == "new" {
-            // Pages are written to their own folder, and a template fits on the disk.
+            // Manual pages are written to their own folder, and a template fits on the disk.
             continue;
         }
         let output = Command::new("unshare")

@@ -125,7 +125,7 @@ fn a_row_with_too_few_cells_is_refused() {
         "line 14: 3 of 6 columns",
         "give every row a cell",
     );
-    // The last row is that of a truncated file.
+    // A short last row counts as the end of a truncated file.
     let flight = read(&short(1499)).unwrap();
     assert!(flight.report.truncated);
     assert_eq!(flight.report.bad_messages, 1);
@@ -184,7 +184,7 @@ fn pulse_widths_in_another_unit_are_refused() {
             &said,
             "name columns of fractions from 0 to 1 `motor1`",
         );
-        // Without limits there is no verdict anyway; `convert` writes such commands.
+        // Without a range there is no verdict anyway, and `convert` writes files with such commands.
         assert!(read(csv.strip_prefix(HEAD).unwrap()).is_ok());
     }
     // Pulses of 0 from outputs that are off and a single damaged cell are not refused.
@@ -235,7 +235,7 @@ fn a_clock_of_whole_numbers_is_named() {
         "line 7: `t_s` jumps from 0 to 5 in one row",
         "divide milliseconds by 1000",
     );
-    // Repeated fractions are assessed.
+    // Repeated times are accepted if they are not all whole numbers.
     let csv = at(&|i| format!("{}", i / 3 * 2) + "e-2");
     assert_eq!(verdict(&csv), "GOOD");
 }

@@ -318,7 +318,7 @@ fn check_as_sarif() {
         2
     );
 
-    // The same number of lines for GitHub.
+    // With `--format github`, there are as many lines as results.
     let output = flagred()
         .args(["check", "--format", "github", PAPER, &broken])
         .output()

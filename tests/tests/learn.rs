@@ -350,7 +350,7 @@ fn a_flight_becomes_rows() {
     for row in &ahead {
         let [air_s, t_s, last_5, last_10] = [3, 4, 7, 8].map(|column| number(&row[column]));
         assert!(t_s >= air_s + 2.0 && last_5 <= last_10, "{row:?}");
-        // Five seconds later, the next 5 s of this row are the last 5 s.
+        // The next 5 s of this row are the last 5 s of the row five seconds later.
         let later = ahead
             .iter()
             .find(|later| (number(&later[4]) - t_s - 5.0).abs() < 1e-6);

@@ -23,7 +23,8 @@ fn run(arguments: &[&str]) -> Output {
     let mut command = flagred();
     let started = Instant::now();
     let output = command.args(arguments).output().unwrap();
-    // The limit allows for a debug build on a busy machine; without limits, these would take minutes or all memory.
+    // 20 s is enough for a debug build on a busy machine. Without the limits under test, these inputs would take
+    // minutes or all memory.
     assert!(
         started.elapsed() < Duration::from_secs(20),
         "{arguments:?} took {:?}",
@@ -132,7 +133,7 @@ fn a_profile_names_rule_sets_of_its_own_folder() {
     }
     folder.file("own/profile.yaml", profile("beside.yaml"));
     assert!(run(&export).status.success());
-    // A profile named without its folder.
+    // A profile can be named without its folder.
     let here = flagred()
         .args(["export", "--c", "profile.yaml"])
         .current_dir(folder.at("own"))

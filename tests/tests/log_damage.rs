@@ -71,7 +71,7 @@ fn a_hole_loses_only_the_rows_in_it() {
         );
         let report = &flight.report;
         assert!(report.skipped_bytes + report.bad_messages > 0, "{report:?}");
-        // All rows before the cut are read from a log that is cut in the middle.
+        // If the log is cut in the middle, all rows before the cut are read.
         let flight = flagred_flightlog::read(&log[..middle], &Options::default()).unwrap();
         assert!(flight.commands.len() >= rows / 3, "{}", flight.format);
     }

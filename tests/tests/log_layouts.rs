@@ -364,7 +364,7 @@ fn telemetry_of_other_vehicles_is_ignored() {
     let roll = flight.signal("roll_deg").unwrap().at(5.0).unwrap();
     assert!((roll - 0.1_f64.to_degrees()).abs() < 1e-5);
     assert_eq!(flight.signal("pitch_des_deg").unwrap().at(5.0), Some(-12.0));
-    // MOT_SPIN_MIN and MAX are not in the log: 0.15 and 0.95, as `watch` assumes.
+    // MOT_SPIN_MIN and MOT_SPIN_MAX are not in the log, so 0.15 and 0.95 are assumed, as by `watch`.
     assert_eq!(flight.assumed, ["effective range 0.15 to 0.95"]);
     assert!((flight.statistics().unwrap().margin_mean - 0.25).abs() < 1e-9);
 }

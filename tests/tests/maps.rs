@@ -116,7 +116,7 @@ fn a_table_of_all_cells() {
         })
         .collect();
     assert_eq!(rows.len(), 51 * 51);
-    // Below 0.15 and 0.05, no rule fires.
+    // If the margin is below 0.15 and the spread below 0.05, no rule fires.
     assert_eq!(rows.iter().filter(|row| row[5] == 1.0).count(), 15 * 5);
     assert!(rows[0][2] >= 75.0 && rows[0][5] == 1.0 && rows[0][6] > 0.0);
     let at = |margin: f64, spread: f64| {

@@ -262,15 +262,15 @@ fn a_weak_motor_is_the_one_above_its_trim_and_remains_reported() {
     let faults: [(&[Factors], &[f64], usize); 4] = [
         // A motor with 75 % of its thrust.
         (&QUAD, &[0.24, 0.0, 0.0, 0.0], 0),
-        // A motor with 60 % of its thrust; the healthy motor opposite is lowered.
+        // A motor with 60 % of its thrust. The command of the healthy opposite motor is lowered.
         (&HEXA, &[0.07, 0.07, 0.24, -0.15, 0.07, 0.07], 2),
-        // A motor that has stopped; the other motor of its arm is motor 8, the opposite motor is motor 6.
+        // A motor that has stopped. The other motor of its arm is motor 8; the opposite motor is motor 6.
         (
             &OCTAQUAD,
             &[-0.02, 0.01, 0.32, 0.01, 0.15, -0.16, 0.15, 0.18],
             2,
         ),
-        // A motor with 50 % of its thrust; the other motor of its arm is motor 1.
+        // A motor with 50 % of its thrust. The other motor of its arm is motor 1.
         (
             &OCTAQUAD,
             &[0.11, 0.1, -0.11, 0.1, 0.0, 0.21, 0.0, -0.01],

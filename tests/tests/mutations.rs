@@ -38,7 +38,7 @@ fn cost(target: &Target, seeds: &[Vec<u8>], seed: u64) -> (Duration, u64) {
         (start.elapsed(), used.bytes_max)
     };
     let (time, memory) = run();
-    // A busy machine is slow once, a slow input twice.
+    // A second run distinguishes a slow input from a busy machine.
     let again = time > Duration::from_millis(500);
     (if again { time.min(run().0) } else { time }, memory)
 }

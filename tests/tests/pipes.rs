@@ -215,7 +215,7 @@ fn a_watch_without_a_reader_continues_recording() {
         vehicle.beat(false, false);
         vehicle.linger(Duration::from_millis(10));
     }
-    // The pipe is closed with the reader.
+    // The reader has ended and closed the pipe.
     assert!(reader.join().unwrap().is_some());
     let before = fs::metadata(&file).unwrap().len();
     let air = flight.in_air.as_ref().unwrap().spans[0];

@@ -284,7 +284,7 @@ fn an_empty_battery_determines_the_risk_of_the_shipped_profile() {
         reported.contains("needs the signal `battery_remaining_pct`"),
         "{reported}"
     );
-    // On board there is one risk only.
+    // Code for a board computes only one risk.
     for language in ["--rust", "--c", "--lua"] {
         let (code, out, reported) = run(&["export", language, "flagred-battery"]);
         assert_eq!((code, out.as_str()), (Some(3), ""), "{language}");

@@ -98,7 +98,8 @@ fn eventful(rate_hz: f64, length_s: f64, late_s: f64) -> Vec<Sample> {
 fn an_eventful_flight_agrees_with_the_documents() {
     let text = include_str!("../../rules/profiles/multirotor.yaml");
     let with_noise = text.replace("std_less_noise", "std");
-    // How long the vehicle is shaken before it lands, and the number of findings: a landing cancels a late WARN.
+    // `late_s` is how long the vehicle is shaken before it lands. It affects the number of findings, because a landing
+    // cancels a late WARN.
     for (text, rate_hz, length_s, late_s, factors, findings) in [
         (text, 3.0, 100.0, 1.1, octa(), 3),
         (text, 10.0, 100.0, 0.45, octa(), 2),

@@ -212,7 +212,7 @@ fn a_clock_that_goes_back_in_the_air_prevents_a_verdict() {
     else {
         panic!("{:?}", verdict(&format!("# rebooted_in_air_s: 40\n{csv}")));
     };
-    // The trouble comes before the motor is known.
+    // Trouble before the reboot gives FAIL.
     let trouble = |t_s: f64| match t_s > 30.0 {
         true => [2000, 1000, 2000, 1000, 2000, 1000],
         false => [1500; 6],
@@ -264,7 +264,7 @@ fn a_flight_csv_whose_clock_starts_again_in_the_air_has_no_verdict() {
         text.contains("the clock goes back in the air at 40.0 s"),
         "{text}"
     );
-    // The same if the clock goes back by one second only; here the rows of that second are assessed.
+    // The verdict is the same if the clock goes back by only one second; here the rows of that second are assessed.
     let second: String = rows(1).lines().fold(String::new(), |mut text, row| {
         let (t_s, rest) = row.split_once(',').unwrap();
         let t_s: f64 = t_s.parse().unwrap();
@@ -277,7 +277,7 @@ fn a_flight_csv_whose_clock_starts_again_in_the_air_has_no_verdict() {
         text.contains("the clock goes back in the air at 40.0 s"),
         "{text}"
     );
-    // On the ground, the next flight begins.
+    // If the clock goes back on the ground, the next flight begins.
     let ground = "40,0,0,0,0,0\n41.5,0,0,0,0,0\n";
     let (code, text) = assess_csv(&format!("{head}{}{ground}{}", rows(1), rows(1)), &[]);
     assert_eq!(code, Some(0), "{text}");

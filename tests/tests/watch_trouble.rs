@@ -201,7 +201,7 @@ fn messages_read(t_us: u32) -> Vec<(u8, u8, Vec<u8>, Vec<usize>)> {
 fn packet(message: u8, extra: u8, payload: &[u8]) -> Vec<u8> {
     let mut log = Tlog::default();
     log.packet(0, 2, (1, 1), (u32::from(message), extra, 0), payload);
-    // Without the timestamp of a log.
+    // Drop the timestamp that precedes the packet in a log.
     log.bytes.split_off(8)
 }
 

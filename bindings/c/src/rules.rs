@@ -88,7 +88,8 @@ fn hedges(codes: &[u32]) -> Result<&[Hedge], Status> {
     if codes.iter().any(|code| *code as usize >= Hedge::ALL.len()) {
         return Err(Status::DamagedPlan);
     }
-    // SAFETY: a hedge is a `u32` below the number of hedges, and all codes are.
+    // SAFETY: a `Hedge` has the size of a `u32`, and all codes are below the number of hedges, so each is a valid
+    // `Hedge`.
     Ok(unsafe { core::slice::from_raw_parts(codes.as_ptr().cast(), codes.len()) })
 }
 

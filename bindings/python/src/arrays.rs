@@ -34,7 +34,7 @@ impl<'py> Arrays<'py> {
             let array = array
                 .is_c_contiguous()
                 .then(|| array.try_readonly().ok())??;
-            // A contiguous array may be unaligned.
+            // `as_slice` fails if the array is not aligned.
             array.as_slice().is_ok().then_some(array)
         });
         let arrays: Vec<_> = arrays.collect::<Option<_>>()?;

@@ -121,7 +121,8 @@ impl MonitorData {
     ) -> PyResult<Update> {
         let commands = numbers(&commands);
         let signals = numbers(&signals);
-        // A command in another unit is refused before the sample is processed, because all samples of the flight are wrong.
+        // A command in another unit is refused before the sample is processed, because then all samples of the flight
+        // are wrong.
         if let Some(motor) = commands
             .iter()
             .position(|e| counted(*e).is_nan() && !e.is_nan())

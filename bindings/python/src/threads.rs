@@ -64,7 +64,7 @@ pub(crate) fn pool(threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
     let mut guard = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     let here = process::id();
     if let Some((_, pools)) = guard.take_if(|(process, _)| *process != here) {
-        // Their threads are in the parent process: ending them here would wait for ever.
+        // The threads of these pools exist only in the parent process, so dropping the pools here would wait for ever.
         std::mem::forget(pools);
     }
     let (_, pools) = guard.get_or_insert_with(|| (here, HashMap::new()));

@@ -117,8 +117,8 @@ fn cell(mapped: &Mapped<'_>, outcome: &Outcome, point: &[f64]) -> Cell {
     }
 }
 
-/// The part of a variable's range that is shown: the whole range, unless the terms change only in less than a quarter of
-/// it. Then it is the part in which they change, with a margin that doubles its width.
+/// The part of a variable's range that is shown: the whole range. If the terms change within less than a quarter of it,
+/// it is only that part, with a margin that doubles its width.
 pub fn shown(variable: &Variable) -> Scale {
     let (low, high) = (variable.low, variable.high);
     let (first, last) = fuzzy::map::changing(variable);

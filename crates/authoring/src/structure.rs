@@ -22,7 +22,7 @@ use crate::{
 pub enum Part {
     /// An input or output.
     Variable(usize),
-    /// A term of a variable.
+    /// A term: the index of its variable and its own index.
     Term(usize, usize),
     /// A rule.
     Rule(usize),

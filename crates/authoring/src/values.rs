@@ -348,7 +348,7 @@ fn verified(
             return Err(error.message.clone() + &help.collect::<String>());
         }
     }
-    // Compared as JSON: an unreadable range is NaN, which does not equal itself.
+    // The models are compared as JSON, because an unreadable range is NaN, which does not equal itself.
     let means = |model: &Model| serde_json::to_value(model).ok();
     let mut after = partial(&source).ok_or(UNREADABLE)?.model;
     let before = &rules.model;

@@ -77,7 +77,7 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
     let mut sarif = Sarif::default();
     let mut exit = Exit::Clean;
     for path in &arguments.models {
-        // A built-in name is the profile of that name, as in `assess`.
+        // As in `assess`, a built-in name selects the profile of that name.
         let text = match built_in::profile_at(path) {
             Some(known) => known.text.to_owned(),
             None => read_text(path).map_err(|failure| arguments.claims.or_input(path, failure))?,

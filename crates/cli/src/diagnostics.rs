@@ -122,7 +122,7 @@ fn foreign(bytes: &[u8], shown: &str) -> Option<(&'static str, String)> {
         ));
     }
     match flagred_flightlog::kind_of(bytes) {
-        // For other text files, the check of rule sets reports what they are.
+        // The check of rule sets reports what such a text file contains.
         Some(kind) if kind.is_text() => {}
         Some(kind) if kind != FileKind::LOG => {
             return Some((kind.name, kind.help.unwrap_or(RULES).replace("FILE", shown)));

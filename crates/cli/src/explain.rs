@@ -53,8 +53,8 @@ fn assignment(model: &Model, given: &[String], text: &str) -> Result<(String, f6
                 "to explain each row of a table, use `--rows {text}`"
             )));
         }
-        // The advice uses the numbers that follow the names, as in `fan = 5`; without names, numbers in the order of
-        // the inputs.
+        // The advice uses the numbers that follow the names, as in `fan = 5`. Without names, it uses the numbers in the
+        // order of the inputs.
         let words = given
             .iter()
             .flat_map(|word| word.split(['=', ':']))

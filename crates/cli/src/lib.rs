@@ -247,8 +247,8 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> u8 {
             }
         }
     };
-    // A process that is not a Rust program, such as Python, does not flush Rust's buffer when it ends. An output that cannot be
-    // written here cannot be reported any more.
+    // A process that is not a Rust program, such as Python, does not flush Rust's buffer when it ends. An error of this
+    // flush cannot be reported any more.
     let _ = io::stdout().flush();
     code
 }

@@ -342,9 +342,9 @@ pub(crate) struct Document<'a> {
 
 #[derive(Serialize, JsonSchema)]
 struct Rules {
-    /// The number of rules before.
+    /// The number of rules before simplification.
     before: usize,
-    /// The number of rules after.
+    /// The number of rules after simplification.
     after: usize,
     /// The rules that had no effect, by their numbers in the original rule set.
     #[schemars(inner(range(min = 1)))]

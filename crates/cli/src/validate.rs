@@ -134,7 +134,7 @@ fn flights(arguments: &Arguments, estimators: &Estimators) -> Result<(Evaluation
     });
     let evaluation = evaluation.ok_or_else(|| match files.len() {
         0 => Failure::unreadable("there are no files in these folders").help("name flight logs, or folders that contain some"),
-        // The reason was reported.
+        // The reason has already been reported.
         1 if exit == Exit::Unreadable => Failure::shown(3),
         _ => Failure::unreadable("there are no steps to evaluate in these files").help(
             "a log needs motor commands, attitude, and 20 s in the air; `flagred inspect` shows what it contains",

@@ -70,7 +70,7 @@ fn a_map_has_the_values_of_eval() {
         let (map, eval) = (second(map).unwrap(), second(eval).unwrap());
         assert!((map - eval).abs() < 1e-6, "{map}, {eval}");
     }
-    // Above 30 °C the fan has no value, even if it has a default.
+    // Above 30 °C the fan has no value, although it has a default.
     assert_eq!(map.lines().last().and_then(second), None, "{map}");
 }
 

@@ -1,7 +1,7 @@
 //! Alarms in calm times, and before upsets.
 //!
-//! An alarm is a WARN or a FAIL, from the time it is raised until its level is last reached. A WARN that is raised to
-//! FAIL counts as one alarm.
+//! An alarm is a WARN or FAIL. It lasts from the time it is raised to the last time its level was reached, without the
+//! time for which the level is held afterwards. A WARN that is raised to FAIL counts as one alarm.
 
 use std::collections::BTreeMap;
 
@@ -194,11 +194,11 @@ impl NeedlessAlarms {
 #[derive(Default, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct Upsets {
-    /// The number of upsets with an alarm on in the 10 s before.
+    /// The number of upsets for which an alarm was on within the 10 s before them.
     pub(crate) before: usize,
-    /// The number of upsets with an alarm raised within 1 s after.
+    /// The number of upsets for which an alarm was raised only within 1 s after them.
     pub(crate) within_1_s: usize,
-    /// The number of upsets without an alarm from 10 s before to 1 s after.
+    /// The number of upsets for which no alarm was on or raised from 10 s before to 1 s after them.
     pub(crate) never: usize,
     /// The number of upsets in flights without a verdict.
     pub(crate) not_assessed: usize,

@@ -116,7 +116,7 @@ mod tests {
             calm(never, never, (60.0, 63.0)),
             [[5.0, 50.0], [73.0, 120.0]]
         );
-        // 15 s are too short.
+        // A stretch of 15 s is too short to count.
         assert_eq!(calm(never, (30.0, 31.0), never), [[41.0, 120.0]]);
         assert_eq!(
             calm((60.0, 61.0), (85.0, 86.0), never),

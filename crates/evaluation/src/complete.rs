@@ -65,8 +65,8 @@ pub fn judged_by_header(flight: &Flight) -> Option<Span> {
     })
 }
 
-/// The judged time of a flight: that of its header, otherwise each time in the air without the first seconds after
-/// take-off and the last before landing.
+/// The judged time from the flight's header. Without it, each time in the air except the first seconds after take-off
+/// and the last seconds before landing.
 pub fn judged_spans(flight: &Flight, settings: &VerdictSettings) -> Vec<Span> {
     if let Some(span) = judged_by_header(flight) {
         return Vec::from_iter((span.length_s() > 0.0).then_some(span));

@@ -59,7 +59,7 @@ pub struct Record {
     pub(crate) results: Vec<ProfileResult>,
 }
 
-/// The first upset during one time in the air.
+/// The first upset in a period in the air.
 pub(crate) struct Upset {
     pub(crate) t_s: f64,
     pub(crate) air: Span,

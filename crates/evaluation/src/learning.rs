@@ -437,7 +437,8 @@ rules: []
         };
         let errors = validate(None, |_| {});
         assert_eq!((errors.rows, errors.without_prediction), (400, 0));
-        // The centroid of the outer terms is 8 % away from the ends, and each rule covers 25 %.
+        // The values of the outer terms (their centroids) are 8 % of the range away from its ends, and neighbouring
+        // terms are 25 % of the range apart.
         assert!(
             errors.rmse < 8.0 && errors.mean_absolute <= errors.rmse,
             "{errors:?}"

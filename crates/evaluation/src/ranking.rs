@@ -184,7 +184,8 @@ impl Ranking {
     /// # Ok::<(), &str>(())
     /// ```
     pub fn within_groups(&self, resamples: usize, seed: u64) -> Option<WithinGroups> {
-        // The order and the ties are those of all predictions. The counts of a group are added when the tie ends.
+        // The predictions of all groups are ranked together. When a tie ends, its counts are added to those of each
+        // group.
         let mut counts = vec![GroupCount::default(); self.groups];
         let mut tied = Vec::new();
         for prediction in &self.ranked {

@@ -119,12 +119,12 @@ pub fn cases<E>(
                 name => name,
             };
             let names: &[&str] = match baseline.name {
-                // On the full range, `margin_mean` has another value.
+                // A column `margin_mean` contains the margin on the full range, which has other values.
                 "margin_mean" => &[other],
                 name => &[name, other],
             };
             let column = match baseline.per_motor {
-                // A row contains no values of single motors.
+                // A row does not contain values of single motors.
                 Some(_) => None,
                 None => Column::of(table, names, &baseline.source),
             };

@@ -49,7 +49,7 @@ pub(crate) struct Scores {
     pub(crate) areas: Option<Areas>,
     /// The 95 % intervals of the areas.
     pub(crate) intervals: Option<Intervals>,
-    /// The mean area within single flights; `None` if no flight has both critical and other cases.
+    /// The mean area under the ROC curve within single flights; `None` if no flight has both critical and other cases.
     pub(crate) within: Option<WithinGroups>,
 }
 

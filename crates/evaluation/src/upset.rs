@@ -128,7 +128,7 @@ mod tests {
 
     #[test]
     fn the_attitude_is_lost_by_its_error_or_by_an_uncommanded_tilt() {
-        // A flight at 10 Hz that rolls from 40 s on, for a fifth of a second or until its end.
+        // A flight at 10 Hz. From 40 s until `until_s`, the roll angle and its set point have the given values.
         let upset = |roll_deg: f64, roll_des_deg: f64, until_s: f64| {
             let attitudes: Vec<(f64, Attitude)> = (0..600)
                 .map(|i| {

@@ -137,7 +137,7 @@ mod tests {
             ((40.0, 60.0), Some(10.0), true),
             ((50.0, 60.0), Some(0.0), false),
             ((51.0, 60.0), Some(-1.0), false),
-            // Ended before, or began after.
+            // These warnings end before the episode, or begin after it.
             ((40.0, 49.0), None, false),
             ((56.0, 60.0), None, false),
             // Only the judged time counts.

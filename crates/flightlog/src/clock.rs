@@ -121,7 +121,7 @@ impl Clock {
         }
     }
 
-    /// Whether a message at `t_s` may follow one at `last_s`; if so, it becomes the latest.
+    /// Returns whether a message at `t_s` can follow one at `last_s`. If it can, accepts it as the latest message.
     fn follows(&mut self, last_s: f64, t_s: f64) -> bool {
         let step_s = t_s - last_s;
         let follows = (BACK_S..=self.longest_s).contains(&step_s);

@@ -197,7 +197,8 @@ pub(crate) fn output_range(
         let source = "raw commands of UAVCAN ESCs".into();
         return Some(range(0.0, UAVCAN_FULL, "raw", source));
     }
-    // Before 1.14 (which logs actuator_motors), DShot commands are counts of the throttle, and the limits of pulses are not used.
+    // Before PX4 1.14 (which logs actuator_motors), DShot commands are counts of the throttle, and the limits of pulses
+    // are not used.
     let is_dshot = parameters
         .get("DSHOT_CONFIG")
         .is_some_and(|rate| rate > 0.0);

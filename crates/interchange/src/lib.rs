@@ -152,7 +152,8 @@ pub fn read_block(text: &str, name: &str, losses: Losses) -> Result<Document, Fi
 ///
 /// # Errors
 ///
-/// The errors of [`read`] with [`Losses::Refuse`], those of [`fuzzy::yaml::parse`], and those of the model.
+/// The errors of [`read`] with [`Losses::Refuse`], those of [`fuzzy::yaml::parse`], and the errors of the model's
+/// validation.
 pub fn document(text: &str) -> Result<Document, Findings> {
     let Some(format) = Format::of(text) else {
         return fuzzy::yaml::parse(text);

@@ -73,7 +73,7 @@ const SHORTEST_S: f64 = 0.1;
 /// The part of a stretch that is within another, extended to at least the shortest stretch that is drawn.
 pub(crate) fn within(part: Stretch, whole: Stretch) -> Stretch {
     let latest_s = (whole.end_s - SHORTEST_S).max(whole.start_s);
-    // `max` and `min` replace NaN by the ends of the whole.
+    // `max` and `min` replace NaN by the ends of `whole`.
     let start_s = part.start_s.max(whole.start_s).min(latest_s);
     let end_s = part.end_s.min(whole.end_s).max(start_s + SHORTEST_S);
     Stretch { start_s, end_s }

@@ -287,7 +287,7 @@ fn cell(column: Option<Option<f64>>, row: usize) -> char {
         Some(None) if row == 0 => '·',
         Some(None) => ' ',
         Some(Some(percent)) => {
-            // At least one eighth, so that 0 is visibly a known value.
+            // The bar is at least one eighth high, so that 0 is visibly a known value.
             let eighths = ((percent / 100.0 * (ROWS * 8) as f64).round() as usize).max(1);
             block(eighths, row)
         }

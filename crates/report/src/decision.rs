@@ -170,7 +170,7 @@ fn cells(estimator: &Estimator, slice: &Slice, x_scale: Scale, y_scale: Scale) -
         let Some(CellAppearance { twentieth, filled }) = look else {
             return;
         };
-        // Slightly larger, so that there is no gap between neighbours.
+        // Cells are drawn slightly larger, so that there is no gap between neighbours.
         let area = format!(r#"x="{column}" y="{row}" width="{length}.05" height="1.05""#);
         let (from, to) = (twentieth * 5, twentieth * 5 + 5);
         let word = if filled { " interpolated" } else { "" };

@@ -137,7 +137,7 @@ fn points(flight: &Flight, steps: &[Step], stretch: Stretch) -> Vec<Point> {
             risk_pct: None,
         });
     }
-    // The risk between a point and the next one.
+    // Each point gets the highest risk between it and the next point.
     let mut steps = steps.iter().peekable();
     for i in 0..points.len() {
         let until_s = points.get(i + 1).map_or(f64::INFINITY, |next| next.x_s) + stretch.start_s;

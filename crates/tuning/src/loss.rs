@@ -72,7 +72,7 @@ fn ranking(predictions: &[f64], truths: &[f64], data: &Data) -> Slopes {
         let left = (at.floor() as usize).min(PLACES - 2);
         (left, at - left as f64)
     };
-    // The weight of each truth at each position.
+    // The total weight of the rows with each truth, at each position.
     let mut masses = [vec![0.0; PLACES], vec![0.0; PLACES]];
     for (row, (prediction, truth)) in predictions.iter().zip(truths).enumerate() {
         let (left, part) = between(*prediction);
@@ -82,7 +82,7 @@ fn ranking(predictions: &[f64], truths: &[f64], data: &Data) -> Slopes {
     }
     let pairs: f64 = masses.iter().map(|mass| mass.iter().sum::<f64>()).product();
     let pairs = pairs.max(f64::MIN_POSITIVE);
-    // Loss, slope and curvature of a pair, by the distance of two positions.
+    // Loss, slope and curvature of a pair, for each distance between two positions.
     let by_distance: Vec<[f64; 3]> = (0..2 * PLACES - 1)
         .map(|i| {
             let distance = (i as f64 - (PLACES - 1) as f64) / (PLACES - 1) as f64 / SCALE;

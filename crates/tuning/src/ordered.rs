@@ -171,8 +171,8 @@ impl Segment {
         for position in positions.iter_mut().skip(last) {
             *position = self.to;
         }
-        // A position that is pulled beyond the range comes as close to its end as the free numbers allow; it is then
-        // set to that end.
+        // A position that is pulled beyond the range comes as close to the end of the range as the free numbers allow.
+        // It is then set to that end.
         let near = AT_END * (self.to - self.from);
         let [first_end, last_end] = self.is_end;
         if let Some(position) = positions.get_mut(first).filter(|_| first_end)
@@ -200,7 +200,7 @@ mod tests {
     fn zeros_give_the_original_positions() {
         let positions = [(0.0, false), (0.2, false), (0.5, false)];
         let ordered = OrderedPositions::new(&positions, 0.0, 1.0, 0.05);
-        // The first one stays at the end of the range.
+        // The first position stays at the end of the range, so two are free.
         assert_eq!(ordered.free(), 2);
         let same = ordered.positions(&[0.0; 2]);
         for ((position, _), same) in positions.iter().zip(same) {

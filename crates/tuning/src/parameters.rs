@@ -43,7 +43,8 @@ enum FreeParameters {
     Consequents(Vec<(usize, Vec<ConsequentParameter>)>),
 }
 
-/// A number of a consequent, which changes by `step` times its free number, within bounds.
+/// A coefficient or constant of a consequent. Its value is `value + step * z`, limited to `bounds`, where `z` is its
+/// free number.
 #[derive(Debug, Clone, Copy)]
 struct ConsequentParameter {
     step: f64,

@@ -27,17 +27,17 @@ pub struct Sizes {
 #[derive(Debug)]
 #[doc(hidden)] // For the C interface. Rust uses `Storage` or `OwnedMemory`.
 pub struct Memory<'m> {
-    /// As many as [`Sizes::numbers`].
+    /// The floating-point numbers; their count is [`Sizes::numbers`].
     pub numbers: &'m mut [f64],
-    /// As many as [`Sizes::partials`].
+    /// The partial conjunctions; their count is [`Sizes::partials`].
     pub partials: &'m mut [PartialConjunction],
-    /// As many as [`Sizes::outputs`].
+    /// The strongest rule of each output; the length is [`Sizes::outputs`].
     pub strongest: &'m mut [StrongestRule],
-    /// As many as [`Sizes::outputs`].
+    /// The outcome of each output; the length is [`Sizes::outputs`].
     pub outcomes: &'m mut [Outcome],
-    /// As many as [`Sizes::outputs`].
+    /// The outcomes of one stage of a chain; the length is [`Sizes::outputs`].
     pub own: &'m mut [Outcome],
-    /// As many as [`Sizes::channels`].
+    /// The state of each channel; the length is [`Sizes::channels`].
     pub seen: &'m mut [ChannelState],
     /// The window of the last risks.
     pub risks: &'m mut Window,

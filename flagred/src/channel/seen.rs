@@ -269,9 +269,7 @@ pub(crate) fn value(
 
 /// The value of an input, and the number and duration of the samples that it was computed from.
 ///
-/// # Example: a second of a window of five
-/// ```
-/// use flagred::{monitor::Craft, source::{Motors, Observation, Observer, Signal, Source, Statistic}};
+/// # Example: one second of samples in a window of five seconds
 ///
 /// let load = Source { statistic: Statistic::Mean, motors: Motors::Pooled, signal: Signal::MotorCommand, window_s: 5.0, exponential: false };
 /// let mut observer = Observer::new([&load], Craft::new(4))?;

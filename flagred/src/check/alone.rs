@@ -124,7 +124,7 @@ fn at(one: &OutvotedInput) -> String {
 fn help(one: &OutvotedInput) -> String {
     let term = one.term.as_deref().unwrap_or("TERM");
     format!(
-        "the rules about the other inputs outweigh it: let rules with `{input} IS {term}` conclude an output of its own, such as `{input}_risk`, and name that output in `other_risks`",
+        "the rules about the other inputs outweigh it: write rules with `{input} IS {term}` that conclude a separate output, such as `{input}_risk`, and name it in `other_risks`",
         input = one.input
     )
 }

@@ -209,7 +209,7 @@ fn an_input_that_raises_no_level_alone_is_reported_as_outvoted() {
         (reached.level, reported),
         (Level::Good, Vec::from(["battery".to_string()]))
     );
-    // An input from the motors may be one vote among many.
+    // An input from the motors needs to contribute only a part of the risk, so it is not reported.
     assert_eq!(found(vote, "{mean: motor_command}").1, [] as [&str; 0]);
 
     let shipped = crate::shipped::flagred_battery();

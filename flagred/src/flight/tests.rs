@@ -220,7 +220,7 @@ fn a_lasting_fault_stays_a_finding_until_landing() {
         assert!(found.to_s > 119.0, "{found:?}");
         assert_eq!(found.severity, Level::Warn);
     }
-    // Without the fault, nothing differs.
+    // Without the fault, nothing is reported.
     let (flown, levels) = with_a_dead_motor(1e9);
     assert_eq!((flown.findings, levels), (vec![], vec![]));
 }

@@ -72,7 +72,7 @@ impl UncertainPeak {
             return;
         };
         let last = peaks.last_mut().filter(|last| last.from_s == open.from_s);
-        // The highest value counts from the time at which the worst level was raised.
+        // The peak is the highest value since the worst level was raised.
         let is_known = |last: &&mut UncertainPeak| {
             last.severity == open.severity && last.value_pct >= open.value_pct
         };

@@ -87,7 +87,7 @@ fn a_flickering_land_detector_does_not_end_the_flight() {
     assert_eq!(last(&flicker).level, Some(Level::Fail));
     let again = flown.fly(0.1, true, LIMIT);
     assert_eq!(ended(&again), []);
-    // No window restarts.
+    // The windows were not cleared.
     assert!(again[0].risk.is_ok());
     assert_eq!(last(&again).level, Some(Level::Fail));
 

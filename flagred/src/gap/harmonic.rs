@@ -46,7 +46,7 @@ pub(super) fn fill(field: &mut Field) {
             break;
         }
     }
-    // By a rounding error, the iteration can leave the range of the known values.
+    // Because of rounding, the iteration can leave the range of the known values.
     for (knot, _) in gap {
         field.values[knot] = field.values[knot].clamp(low, high);
     }

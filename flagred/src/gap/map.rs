@@ -95,7 +95,7 @@ mod tests {
                 assert_eq!(map.is_filled(cell), in_corner, "{point:?}");
                 assert_eq!(map.filled(cell).is_some(), in_corner);
             }
-            // The cell is 0.04 below the covered part, which is 0.08 of the range of 0.5.
+            // The cell's spread is 0.04 below the covered part. That is 0.08 of the range, which is 0.5 wide.
             let distance = map.filled(2 * 51 + 1).unwrap().distance;
             approx::assert_abs_diff_eq!(distance, 0.08, epsilon = 1e-12);
         }
@@ -124,7 +124,7 @@ mod tests {
             sum += weight * map.value(cell).unwrap();
             weights += weight;
         }
-        // The usual form, over all covered cells, would give a saturated drone only 49 %.
+        // The usual form of inverse distance weighting, over all covered cells, would give a saturated drone only 49 %.
         approx::assert_abs_diff_eq!(sum / weights, 49.0, epsilon = 2.0);
     }
 

@@ -209,7 +209,7 @@ fn risk_follows_the_motors_within_the_window_and_is_unknown_on_the_ground() {
         .iter()
         .filter_map(|a| a.change.map(|level| (a.t_s, level)))
         .collect();
-    // A landing changes no level: on the ground it is unknown.
+    // A landing is not reported as a change: on the ground the level is unknown.
     let [(warn_s, Level::Warn), (fail_s, Level::Fail)] = changes[..] else {
         panic!("{changes:?}");
     };
@@ -536,8 +536,8 @@ fn a_missing_signal_has_its_default_until_it_first_arrives() {
     let plan = estimator.plan().unwrap();
     let names = ["battery_v"];
     let known = Craft::new(2).with_signals(&names);
-    // A case is a craft, the signal in 2 samples on the ground and 4 in the air, whether the input is assumed after each
-    // sample, and the value of the input.
+    // A case contains a craft, the signal in 2 samples on the ground and 4 in the air, whether the input is assumed
+    // after each sample, and the value of the input after each sample.
     let nan = f64::NAN;
     type Case<'a> = (Craft<'a>, [f64; 6], [bool; 6], [f64; 6]);
     let cases: [Case<'_>; 4] = [

@@ -91,7 +91,7 @@ fn edited(text: &str, tree: &Node, changes: &[(&str, String)]) -> Option<String>
         let (at, first) = added(text, verdict, &missing)?;
         edits.push((at..at, first));
     }
-    // From the end, so that earlier positions stay valid.
+    // The edits are applied from the end, so that earlier positions stay valid.
     edits.sort_by_key(|(span, _)| core::cmp::Reverse(span.start));
     let mut changed = text.to_owned();
     for (span, with) in edits {

@@ -338,7 +338,7 @@ mod tests {
     #[test]
     fn of_two_motors_at_zero_the_one_that_stopped_first_is_named() {
         let mut flown = SimulatedFlight::new([0.0, 0.0]);
-        // An `at_zero_s` of 0 stands for a motor at the upper limit, which is as near to its limit.
+        // If `at_zero_s` is 0, the motor is at its upper limit instead, with the same margin.
         for (at_zero_s, named) in [
             ([0.1, 0.3], 2),
             ([0.3, 0.1], 1),
@@ -371,7 +371,7 @@ mod tests {
         let (changes, findings, _) = run(&[
             (1.0, 0.0, 0.0),
             (2.0, 0.0, 60.0),
-            // The level is held, then not held for less than `clear_after_s`.
+            // The risk holds the level for 5 s, and is then too low for less than `clear_after_s`.
             (5.0, 0.0, 45.0),
             (1.0, 0.0, 0.0),
             (1.0, 0.0, 90.0),
@@ -435,7 +435,7 @@ mod tests {
         let mut later = flown.clone();
         assert_eq!(flown.end(2.4, true).ended, None);
         assert!(later.end(2.6, true).ended.is_some());
-        // A FAIL, and a WARN while FAIL is reached, are not a landing.
+        // A landing cancels neither a FAIL nor a WARN during which FAIL is being reached.
         for steps in [
             &[(1.0, 0.0, 90.0)][..],
             &[(1.0, 0.0, 60.0), (0.3, 0.0, 90.0)],

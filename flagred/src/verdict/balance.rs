@@ -146,7 +146,7 @@ fn weak(motors: &[Motor], limit: f64) -> Option<UnbalancedMotor> {
     let all: f64 = motors.iter().map(|m| m.shift() * m.shift()).sum();
     let explains = shift * shift >= ONE_MOTOR * own * all;
     (shift > limit && explains).then(|| {
-        // On a coaxial arm the command of the other motor may rise nearly as much.
+        // On a coaxial arm, the command of the other motor may rise nearly as much. Then both motors are named.
         let next = highest(motors, Motor::shift, Some(motor));
         let other = next.filter(|(_, next)| !is_ahead(shift, *next));
         UnbalancedMotor {

@@ -172,7 +172,7 @@ fn merged(mut boxes: Vec<Cells>) -> Vec<Cells> {
                 None => left.push(one),
             }
         }
-        // A merged box may have a new neighbour among the earlier ones.
+        // A merged box may have a new neighbour among the earlier ones, so merging is repeated until nothing changes.
         if left.len() == before {
             return left;
         }

@@ -225,7 +225,7 @@ fn without_value(model: &Model, output: &str, term: &Term, formula: &Formula) ->
     let value_of = |point: &[f64], name: &str| {
         let mut inputs = model.inputs.iter().zip(point);
         let found = inputs.find(|(input, _)| input.name == name);
-        // The value of an output is not known.
+        // The result is `None` for an output, because its value is not known here.
         found.map(|(_, value)| *value)
     };
     points.retain(|point| {
@@ -277,7 +277,8 @@ fn has_a_value(model: &Model, formula: &Formula) -> bool {
     const POINTS: u32 = 500;
     let variables: Vec<&Variable> = model.variables().collect();
     (0..=POINTS).any(|point| {
-        // An additive recurrence. Its step differs between variables; that of the first one is 1 / golden ratio.
+        // The points follow an additive recurrence. Its step differs between variables; that of the first one is 1 /
+        // golden ratio.
         let value = |name: &str| {
             let index = variables.iter().position(|variable| variable.name == name);
             let Some((index, variable)) = index.and_then(|i| Some((i, variables.get(i)?))) else {

@@ -117,7 +117,7 @@ mod tests {
         let output = "{range: [0, 12], partition: [low, medium, high]}";
         let (low, high) = of(output, "[IF x IS a THEN y IS medium]").unwrap();
         assert!((low - 6.0).abs() < 1e-9 && (high - 6.0).abs() < 1e-9);
-        // A ramp that is cut near its foot is nearly flat, so its centroid moves.
+        // A ramp that is cut near its foot is nearly flat, so its centroid is near its middle.
         let (low, high) = of(output, "[IF x IS a THEN y IS high]").unwrap();
         assert!((high - 10.0).abs() < 1e-9, "{high}");
         assert!((low - 9.0).abs() < 0.02, "{low}");

@@ -115,7 +115,8 @@ pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnosti
     );
     found.extend(report.jumps.iter().map(|one| at.jump(one)));
     let without_value = effects::of(model, &at, &mut found);
-    // Near a pole, an output takes values that were not evaluated.
+    // Near a pole of its formula, an output takes values that were not evaluated, so its reach is not reported as
+    // narrow.
     found.retain(|finding| {
         let is_about = |name: &String| finding.message.starts_with(&format!("`{name}` "));
         finding.code != "narrow-reach" || !without_value.iter().any(is_about)

@@ -160,8 +160,8 @@ pub fn check(engine: &Engine, options: &Options) -> Result<Report, alloc::boxed:
     let (counterexamples, counterexamples_complete) = claims(engine, &options.monotone)?;
     let (first, later) = stages(model);
     let stages: Vec<Stage<'_>> = core::iter::once(first).chain(later).collect();
-    // Regions and rules that never fire are searched for with the upper degrees. That is exact, unless NOT reads a
-    // lower degree.
+    // Regions and rules that never fire are searched for with the upper degrees. This would be wrong if NOT is applied
+    // to a type-2 term, so there is no search then.
     let (never_firing, (uncovered, uncovered_complete)) = match model.negates_type2() {
         true => (Vec::new(), (Vec::new(), false)),
         false => (

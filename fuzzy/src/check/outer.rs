@@ -207,7 +207,7 @@ fn widened(model: &Model, output: &Output, unreached: &[UnreachedTerm]) -> Optio
             true => [low - more, high],
             false => [low, high + more],
         };
-        // The distance from the value to the peak.
+        // Returns how far the value still is from the peak if the range is wider by `more`.
         let short = |more: f64| {
             let mut wider = output.clone();
             [wider.variable.low, wider.variable.high] = by(more);

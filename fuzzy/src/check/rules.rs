@@ -196,7 +196,7 @@ const MAX_COMPARISONS: usize = 100_000_000;
 pub(super) fn subsumed(model: &Model) -> Vec<SubsumedRule> {
     let mut numbers = Numbers::default();
     let mut groups: BTreeMap<(usize, String), Vec<Member>> = BTreeMap::new();
-    // With any other aggregation, a rule adds to the result even if a more general rule fires.
+    // If an aggregation is not the maximum, a rule adds to the result even if a more general rule fires.
     let aggregation = |output: &Output| model.operators_of_output(output).aggregation;
     let outputs = model.outputs.iter();
     let adding = outputs.filter(|output| aggregation(output) != Aggregation::Maximum);

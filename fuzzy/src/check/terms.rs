@@ -48,7 +48,7 @@ pub struct EqualTerms {
 pub(super) fn equal(variable: &Variable) -> Vec<EqualTerms> {
     let values = axis::values(variable);
     let outside = outside(variable);
-    // A hash per fuzzy set, so that most pairs need no comparison of degrees.
+    // Each fuzzy set has a hash, so that for most pairs no degrees need to be compared.
     let hashes = variable.terms.iter().map(|term| {
         is_set(&term.membership_function, variable).then(|| hash_of_degrees(term, &values))
     });
@@ -197,7 +197,7 @@ fn is_set(shape: &MembershipFunction, variable: &Variable) -> bool {
 /// Returns the intervals in which every term of an input is 0. Only rules with NOT can cover such values.
 pub(super) fn holes(input: &Variable) -> Vec<TermGap> {
     if input.terms.is_empty() {
-        // Only linear consequents read this input.
+        // Only linear functions and formulas of outputs can read an input without terms.
         return Vec::new();
     }
     let covered = |x: f64| input.terms.iter().any(|term| term.membership(x) > 0.0);

@@ -498,7 +498,7 @@ fn parts_without_an_effect_or_a_value_are_found() {
         ]
         .join("\n")
     );
-    // These constant degrees are intended.
+    // These constant degrees are intended, so they are not reported.
     for (term, output) in [
         (shoulder, sets),
         ("{constant: 1}", sets),
@@ -542,7 +542,7 @@ fn a_sugeno_output_beyond_its_range_is_found() {
 
 #[test]
 fn a_gap_is_reported_once() {
-    // No term covers 3 to 5. The rules and the coverage there are not reported again.
+    // No term covers 3 to 5. The regions there in which no rule fires, or only weakly, are not reported in addition.
     let said = findings_of(
         "fuzzy: 1\nname: a\ninputs: {x: {range: [0, 8], terms: {low: {left_shoulder: [1, 3]}, \
          high: {right_shoulder: [5, 7]}}}}\n\
@@ -551,7 +551,8 @@ fn a_gap_is_reported_once() {
     );
     assert_eq!(said.len(), 1, "{said:?}");
     assert!(said[0].contains("`x` has no term from 3 to 5"), "{said:?}");
-    // A missing rule is one finding; the unused term and the region in which no rule fires are not reported again.
+    // A missing rule is one finding. The unused term and the region in which no rule fires are not reported in
+    // addition.
     let said = findings_of(
         "fuzzy: 1\nname: a\ninputs: {x: {range: [0, 1], partition: [low, medium, high]}}\n\
          outputs: {z: {range: [0, 1], defuzzifier: weighted_average, terms: {a: {constant: 0}, b: {constant: 1}}}}\n\
@@ -600,7 +601,7 @@ fn reach_of(output: &str) -> Vec<String> {
 fn an_outer_term_that_is_never_reached_is_a_warning_with_both_remedies() {
     let reported = reach_of("{range: [0, 40], partition: [off, short, medium, long]}");
     insta::assert_snapshot!(reported.join("\n"));
-    // Applying the suggestion removes the finding.
+    // Each suggestion removes the finding when it is applied.
     for remedy in [
         "{range: [-7.69, 47.69], partition: {off: 0, short: 13.3333, medium: 26.6667, long: 40}}",
         "{range: [0, 40], terms: {off: {constant: 0}, short: {constant: 13.3333}, medium: {constant: 26.6667}, long: {constant: 40}}, \
@@ -698,7 +699,7 @@ rules: [IF x IS low THEN z IS a, IF x IS high THEN z IS b]"
     assert_eq!(of("-10 * log(x)"), at("x = 0"));
     assert_eq!(of("1 / (1 + y)"), at("y = -1"));
     assert_eq!(of("x / y"), at("x = 1, y = 0"));
-    // No rule for `a` fires there.
+    // At the pole (x = 2), no rule that concludes `a` fires.
     assert!(
         !of("1 / (2 - x)")
             .iter()

@@ -169,7 +169,7 @@ impl Kinks {
 pub(super) struct Smooth {
     /// An aggregation that gives the same degrees there, except beyond a step, where the degree is 1.
     pub(super) aggregation: Aggregation,
-    /// Whether there are steps to 1.
+    /// Whether the aggregated degree jumps to 1 at some positions.
     pub(super) has_steps: bool,
     /// Whether the aggregated set of straight terms is straight.
     pub(super) keeps_lines: bool,
@@ -182,7 +182,8 @@ impl Smooth {
                 (aggregation, true)
             }
             Aggregation::NilpotentMaximum => (Aggregation::Maximum, true),
-            // Below the least strength, terms may cross without a cut, so the set may have a kink there.
+            // If one degree is below the least strength, the set is the larger of both. Terms may cross there without a
+            // cut, so the set may have a kink.
             Aggregation::Drastic => (Aggregation::Maximum, false),
             Aggregation::ProbabilisticSum | Aggregation::Einstein | Aggregation::Hamacher => {
                 (aggregation, false)

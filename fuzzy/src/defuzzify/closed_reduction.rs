@@ -45,7 +45,7 @@ pub(super) fn closed(method: TypeReduction, summary: Summary) -> Option<(f64, f6
         (TypeReduction::NieTan | TypeReduction::BegianMelekMendel, None) => number(upper),
         (TypeReduction::WuMendel, None) => Some(support),
         (TypeReduction::NieTan, Some((lower_area, lower))) => {
-            // The weighted mean as a shift, so that no digits are lost far from 0.
+            // The weighted mean is computed as a shift of `lower`, so that no digits are lost far from 0.
             number(lower + (upper - lower) * (upper_area / (lower_area + upper_area)))
         }
         (TypeReduction::BegianMelekMendel, Some((_, lower))) => {

@@ -179,7 +179,7 @@ impl Curves {
         } = workspace;
         let smooth = Smooth::of(operators.aggregation);
         let has_steps = all_known && smooth.has_steps;
-        // The branch of an operator with a step is the same on the whole piece.
+        // An operator with a step stays on one side of the step on the whole piece.
         let aggregation = match has_steps {
             true => smooth.aggregation,
             false => operators.aggregation,
@@ -217,7 +217,7 @@ impl Curves {
             let is_straight = parts.iter().all(|part| part.line.is_some())
                 && (smooth.keeps_lines || parts.len() == 1);
             let at = |part: f64| from + width * part;
-            // A position just inside the piece, so that a step at a cut has no effect.
+            // Positions are taken just inside the piece, so that a step at a cut has no effect.
             let inside = |x: f64| x.max(from.next_up()).min(to.next_down());
             let curve = Curve {
                 degree: &|part| self.joined(parts, aggregation, at(part)),

@@ -285,7 +285,7 @@ impl Set {
             .pieces(upper, self.operators, workspace, &mut |piece: &Piece<
                 '_,
             >| {
-                // The highest degree of a curve is not known.
+                // The highest degree of a curve is not known, so every curve counts as high.
                 let is_high = piece.curve.is_some() || larger(piece.left, piece.right) >= level;
                 if has_area(piece) && is_high {
                     // The part of a line that is high enough.

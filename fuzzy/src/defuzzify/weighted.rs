@@ -40,7 +40,8 @@ impl Consequents {
                             input: index as u32,
                         }));
                 }
-                // Sorted by input, so that the order in the text does not affect the bits of the sum.
+                // The coefficients are sorted by input, so that the order in the text does not affect the bits of the
+                // sum.
                 self.coefficients[first..].sort_by_key(|coefficient| coefficient.input);
                 *constant
             }

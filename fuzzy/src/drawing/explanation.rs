@@ -228,7 +228,7 @@ pub(super) fn sticks(
     numbers: &[Number],
 ) {
     let ends = numbers.iter().map(|(value, ..)| *value);
-    // A number may be outside the range.
+    // The scale includes numbers outside the range.
     let x = Scale::new(
         ends.clone().fold(variable.low, f64::min),
         ends.fold(variable.high, f64::max),

@@ -94,7 +94,7 @@ pub(super) fn cells(
     };
     runs(columns, rows, colour, |column, row, length, colour| {
         let area = area(column, row, length);
-        // Slightly larger, so that no gap is visible between neighbours.
+        // Cells are drawn slightly larger, so that no gap is visible between neighbours.
         let area = Frame {
             width: area.width + 0.3,
             height: area.height + 0.3,

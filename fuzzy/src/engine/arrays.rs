@@ -118,7 +118,7 @@ impl OwnedTable {
             return None;
         }
         table.sizes.partial = 1;
-        // In the order of the model, finding the strongest rule takes fewer steps.
+        // Programs are added in the order of the model, because finding the strongest rule then takes fewer steps.
         let mut drafts: Vec<&IndexedRule> = drafts.iter().collect();
         drafts.sort_by_key(|draft| draft.rule);
         for draft in drafts {

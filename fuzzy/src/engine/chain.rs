@@ -10,7 +10,7 @@ use crate::table;
 /// The stages of a model with chains, and the outputs that connect them.
 #[derive(Debug, Clone)]
 pub(super) struct Chain {
-    /// The indices of the first stage in the model.
+    /// The indices, in the model, of the outputs and rules of the first stage.
     first: OwnedStageIndices,
     later: Vec<LaterStage>,
     /// The same stages as plain arrays. This field and the next two contain the fields of a [`table::Chain`].
@@ -26,7 +26,7 @@ pub(super) struct LaterStage {
     pub(super) stage: Stage,
 }
 
-/// The indices in the model of the outputs and rules of a stage.
+/// The indices, in the model, of the outputs and rules of a stage.
 #[derive(Debug, Clone)]
 struct OwnedStageIndices {
     /// The index in the model of each output that the stage reads. The values of these outputs follow those of the
@@ -121,7 +121,8 @@ impl Chain {
 impl Engine {
     /// Implements [`Engine::outcomes`](super::Engine) for a model with chains. `keep` may change the outcome of an
     /// output before other outputs read it.
-    // Separate from the evaluation of a single stage, so that models without chains do not pay for it.
+    // This function is separate from the evaluation of a single stage, so that models without chains do not become
+    // slower.
     #[inline(never)]
     pub(super) fn chained(
         &self,

@@ -123,7 +123,7 @@ impl<'a> ConditionContext<'a> {
         let outputs = self.model.outputs.iter().zip(self.outcomes);
         let outputs = outputs.map(|(output, outcome)| {
             let (variable, value) = (&output.variable, outcome.value());
-            // Clamped to the range, as an input would be.
+            // The value is clamped to the range, as an input would be.
             (variable, value.map(|value| clamped(variable, value)))
         });
         inputs

@@ -382,7 +382,7 @@ impl Stage {
                 partial: vec![PartialConjunction::NONE; sizes.partial as usize],
                 next: vec![PartialConjunction::NONE; sizes.partial as usize],
                 stack: AlignedRows::new(sizes.stack as usize),
-                // They are cleared eight at a time.
+                // Strengths are cleared eight at a time.
                 strengths: AlignedRows::new(strengths.next_multiple_of(8)),
                 strongest: vec![StrongestRule::NONE; self.outputs.len()],
             },

@@ -122,7 +122,8 @@ impl OwnedTable {
             .filter_map(|draft| Some((draft.literals.as_deref()?, &*draft.actions)))
             .collect();
         let is_short = are_few(drafts);
-        // Programs need all degrees, so other rules may use them too.
+        // If one rule is a program, the degrees of all literals are computed anyway. Then the plain ANDs become
+        // programs too, unless there are many rules.
         let is_plain = plain.len() == drafts.len();
         let has_table = (is_plain || !is_short) && self.dense(&plain, inputs).is_some();
         let is_uniform = has_table && self.uniform(inputs, unused).is_some();
@@ -153,7 +154,7 @@ impl OwnedTable {
             let first_program = self.programs.len() as u32;
             let mut latest = None;
             for draft in drafts.iter().filter(|draft| draft.block == block.index) {
-                // The method considers each rule once, even if its hedges split it into several programs.
+                // An activation method considers each rule once, even if hedges split the rule into several programs.
                 let selects = block.activation != Activation::General;
                 let again = selects && latest.replace(draft.rule) == Some(draft.rule);
                 let steps = if again { &[][..] } else { &draft.steps };
@@ -165,7 +166,7 @@ impl OwnedTable {
             self.blocks.push(block);
             self.sizes.partial = self.sizes.partial.max(end_program - first_program);
         }
-        // An empty trie, so that no rule is found in it.
+        // The trie is empty, so that no rule is found in it.
         self.nodes.push(Node::default());
         self.conjunctions = Conjunctions::Trie;
         self.sizes.partial = self.sizes.partial.max(1);

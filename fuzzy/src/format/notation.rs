@@ -9,7 +9,7 @@ use crate::{
     tree::{Entry, Node, Value},
 };
 
-/// Reports a single error for terms that are numbers, `terms: {low: 0, high: 10}`; returns whether they are.
+/// If all terms are plain numbers (`terms: {low: 0, high: 10}`), reports a single error and returns true.
 pub(super) fn bare_numbers(
     what: &str,
     entry: &Entry<'_>,

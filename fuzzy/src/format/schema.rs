@@ -552,7 +552,7 @@ fn activation() -> Node {
         |key: &str, which: &str, value: Node| Node::mapping(object(which, [(key, value)], &[key]));
     let counted = |key: &str, which: &str| {
         let counted = object(
-            "This number of rules, among those whose firing strength reaches a minimum",
+            "At most `rules` rules, among those whose firing strength is at least `at_least`",
             [
                 ("rules", whole("The number of rules", 1.0)),
                 ("at_least", number("The minimum firing strength")),

@@ -204,7 +204,8 @@ fn other_parameters(form: &ShapeForm, fields: &Fields<'_>) -> Diagnostic {
         all_of(&others)
     );
     let span = unknown.first().map_or(0..0, |entry| entry.key_span.clone());
-    // The number of each parameter, if the keys have other meanings; the only other key is the remaining parameter.
+    // The keys may be the names of these parameters in other programs. A single unknown key stands for the remaining
+    // parameter.
     let parameter = |entry: &Entry<'_>| foreign::parameter(form.name, entry.key, &names);
     let entries = fields.entries().iter();
     let (known, others): (Vec<&Entry<'_>>, Vec<_>) =
@@ -228,7 +229,7 @@ fn other_parameters(form: &ShapeForm, fields: &Fields<'_>) -> Diagnostic {
         .iter()
         .map(|entry| entry.value.as_number_text());
     let numbers = numbers.collect::<Option<Vec<&str>>>();
-    // Without known keys, only the order of a list is certain.
+    // If the keys are unknown, their order is certain only for a shape that can be written as a list.
     let numbers = numbers.filter(|numbers| form.as_list() && numbers.len() == names.len());
     let help = match meant.or(numbers) {
         Some(numbers) if form.as_list() => {

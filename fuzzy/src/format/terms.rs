@@ -114,7 +114,7 @@ fn uncertain(
     let mut others = fields.entries().iter();
     if let Some(other) = others.find(|entry| !["gaussian", "height"].contains(&entry.key)) {
         let message = format!(
-            "{term} has `{}` beside a gaussian with intervals",
+            "{term} has both `{}` and a gaussian with intervals",
             other.key
         );
         let help =

@@ -126,7 +126,8 @@ fn one<'n>(
     let before = findings.len();
     let fields = entry.fields(&what, keys, &variable_help(entry.key), findings);
     let (variable, here) = variable(&what, entry, fields.as_ref(), findings);
-    // A variable below another one, whose keys are duplicates if they are in the same column.
+    // A variable may be written inside another one. If its keys are in the same column as the keys of the other
+    // variable, they are reported as duplicates.
     let repeats = |finding: &Diagnostic| {
         finding.code == "duplicate-key" && finding.message.starts_with(&what)
     };

@@ -507,7 +507,7 @@ impl FormulaMistake<'_> {
                 let numbers = if takes == 1 { "number" } else { "numbers" };
                 let message = format!("`{name}` takes {takes} {numbers}, not {has}");
                 let comma = decimal_comma(rest);
-                // Other commas are followed by a blank.
+                // A comma is certainly a decimal comma if other commas are followed by a space.
                 let comma = comma.filter(|_| has > takes && rest.contains(", "));
                 let help = match takes {
                     _ if comma.is_some() => {

@@ -175,7 +175,7 @@ fn rules_can_be_completed_and_made_monotone() {
     let rows = [
         [0.0, 0.2, 100.0],
         [0.1, 0.2, 25.0],
-        // Contrary to physics: less margin, but less risk than in the rows above.
+        // Contrary to physics: less spread than in the row above, but more risk.
         [0.1, 0.1, 75.0],
         [0.3, 0.0, 0.0],
     ];

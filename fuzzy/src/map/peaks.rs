@@ -23,7 +23,7 @@ pub fn peaks(variable: &Variable) -> Vec<f64> {
     let mut peaks = vec![low, high];
     peaks.extend(tops.flat_map(|(first, last)| [first, last]));
     peaks.sort_by(f64::total_cmp);
-    // Peaks closer than a thousandth of the range are not intended; the ends always stay.
+    // Peaks closer than a thousandth of the range are merged; the ends are always kept.
     let apart = 1e-3 * (high - low);
     peaks.dedup_by(|next, last| {
         let is_near = *next - *last < apart;

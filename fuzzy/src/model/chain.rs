@@ -194,7 +194,7 @@ fn visit_reads<'m>(model: &'m Model, mut visit: impl FnMut(usize, &'m str, Refer
         });
     }
     for (by, output) in model.outputs.iter().enumerate() {
-        // In a fuzzy set, a formula names the variable of the output itself.
+        // In a fuzzy output, a formula reads only its own variable, which is not a reference to another output.
         if !output.defuzzifier.takes_numbers() {
             continue;
         }

@@ -321,7 +321,7 @@ mod tests {
             right: 17.5,
         };
         assert_eq!(upper, expected);
-        // The flanks have the lengths 4 and 8, and 9 is left of the width of 12.
+        // The flanks are 4 and 8 wide, together 12, but only 9 are left for them, so the height is 9 / 12.
         let expected = F::Triangle {
             left: 5.5,
             peak: 8.5,
@@ -458,7 +458,7 @@ mod tests {
             let (least, most) = near.fold((1.0, 0.0), |(low, high), degree| (degree.min(low), degree.max(high)));
             let (low, high) = (lower.height * lower.membership_function.membership(x), upper.membership(x));
             prop_assert!(low <= least + 1e-12 && high >= most - 1e-12, "{low} {least} {most} {high}");
-            // None of these functions has a minimum between two values.
+            // None of these functions has a minimum inside an interval, so its least degree is at one of the ends.
             let least = function.membership(x - by).min(function.membership(x + by));
             prop_assert!((low - least).abs() < 1e-9, "{low} {least}");
         }

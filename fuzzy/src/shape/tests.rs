@@ -222,7 +222,8 @@ fn gaussians() {
             (INFINITY, 0.0),
         ],
     );
-    // `left_mean` is above `right_mean`: the product of both halves; in the middle, one deviation from each mean.
+    // `left_mean` is above `right_mean`, so the degree is the product of both halves. The middle is one deviation from
+    // each mean.
     table(
         MembershipFunction::Gaussian2 {
             left_mean: 2.0,

@@ -130,7 +130,7 @@ fn act<A: Arrays>(
 
 /// Passes the rules of all blocks that fire to `firing`, with the strengths that result from the activation methods.
 /// `rules` has room for the rules of the largest block.
-// Separate from plain rules, so that these do not become slower.
+// This function is separate, so that tables without blocks do not become slower.
 #[inline(never)]
 pub(super) fn fire_blocks<A: Arrays>(
     table: &A,

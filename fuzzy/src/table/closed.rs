@@ -15,7 +15,7 @@ use crate::rows::{join, set};
 pub enum ClosedForm {
     /// No closed form: an [`Engine`](crate::Engine) integrates the aggregated set.
     Integrated,
-    /// The centroid of a partition with minimum and maximum: [`Pair`]s.
+    /// The centroid of a partition, with implication by minimum and aggregation by maximum; computed from [`Pair`]s.
     Partition,
     /// The centroid of a sum of products: [`Moment`]s.
     Moments,
@@ -30,9 +30,10 @@ pub enum ClosedForm {
     Cut,
     /// A [`FuzzySet`](super::FuzzySet) of terms that are scaled (implication by product).
     Scaled,
-    /// The centroid of a partition with product and maximum: [`Pair`]s.
+    /// The centroid of a partition, with implication by product and aggregation by maximum; computed from [`Pair`]s.
     ScaledPartition,
-    /// The centroid of straight terms with minimum and maximum: a [`LayeredSet`](super::LayeredSet).
+    /// The centroid of straight terms, with implication by minimum and aggregation by maximum; computed from a
+    /// [`LayeredSet`](super::LayeredSet).
     Layers,
 }
 
@@ -119,7 +120,7 @@ pub struct Consequent {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub struct Coefficient {
-    /// The coefficient.
+    /// The factor of the input's value.
     pub coefficient: f64,
     /// The index of the input.
     pub input: u32,

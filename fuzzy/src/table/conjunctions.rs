@@ -93,8 +93,8 @@ pub(super) fn fire_uniform<A: Arrays, const L: usize>(
         let [c, d] = &at(table, second, values);
         let mut reached = [*a, *b, *a, *b];
         for (cell, other) in reached.iter_mut().zip([c, c, d, d]) {
-            // Without this check between them, a compiler compares the four pairs together and selects by branches that
-            // a processor mispredicts. It fails only in a damaged table.
+            // Without this check between the pairs, the compiler combines the comparisons of the four pairs and selects
+            // by branches that a processor mispredicts. The check fails only in a damaged table.
             if L == 1 && (cell.at[0] + other.at[0]) as usize >= cells.actions.len() {
                 return;
             }
@@ -190,7 +190,8 @@ pub(super) fn fire_dense<A: Arrays, const L: usize>(
             let mut widened = 0;
             for cell in &partial[..counts[row]] {
                 for term in &alive[..alive_here[row]] {
-                    // Always written, but counted only if it is above 0: a branch would be mispredicted.
+                    // The degree is always written, but counted only if it is above 0, because a branch would be
+                    // mispredicted.
                     let degree = and(cell.degree[row], term.degree[row]);
                     next[widened].set(row, degree, cell.at[row] + term.at[row]);
                     widened += usize::from(degree > 0.0);

@@ -105,7 +105,7 @@ fn separators(text: &str) -> Option<String> {
             let number = format!("{whole}.{part}");
             plain(&number)?;
             let digits = whole.trim_start_matches(['+', '-']);
-            // Three digits after a comma are thousands, or a fraction.
+            // Three digits after a comma may be thousands or a fraction.
             let is_thousands = part.len() == 3 && (1..=3).contains(&digits.len()) && digits != "0";
             return Some(match is_thousands {
                 true => {

@@ -62,7 +62,7 @@ impl Validator<'_> {
             let lower = &lower.membership_function;
             if output.defuzzifier.takes_numbers() {
                 let message = format!(
-                    "{what} has a lower membership function, but the output is a weighted one"
+                    "{what} has a lower membership function, but the defuzzifier of the output needs numbers"
                 );
                 let help = "write one number or linear function: the interval of a weighted output comes from the terms of its inputs";
                 self.error("wrong-term", here, message, help);

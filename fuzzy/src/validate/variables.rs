@@ -234,7 +234,8 @@ impl Validator<'_> {
         if !output.defuzzifier.is_weighted() {
             self.terms_are_not_numbers(what, output, spans);
         }
-        // The terms that are reported in a single error: fuzzy sets of a weighted output, singletons of a bisector.
+        // The terms that are reported in a single error: fuzzy sets of a weighted output, or singletons of an output
+        // with `bisector`.
         let mut misfits = Vec::new();
         let spans_of_terms = &spans.terms;
         for (i, term) in output.variable.terms.iter().enumerate() {
@@ -302,7 +303,9 @@ impl Validator<'_> {
             self.error("wrong-term", here, message, help);
             return;
         }
-        let message = format!("{subject} {are} fuzzy set{kind}, but the output is a weighted one");
+        let message = format!(
+            "{subject} {are} fuzzy set{kind}, but the defuzzifier of the output needs numbers"
+        );
         let is_monotone = terms
             .clone()
             .all(|term| term.membership_function.is_monotone());

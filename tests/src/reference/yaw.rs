@@ -19,7 +19,7 @@ fn yaw(commands: &[f64], factors: &[[f64; 3]]) -> Option<f64> {
     let mut yaw = 0.0;
     for of in [vec![1.0; factors.len()], column(0), column(1), column(2)] {
         let mut rest = of.clone();
-        // Twice, so that rounding errors are orthogonal as well.
+        // This is done twice, so that rounding errors are orthogonal as well.
         for other in basis.iter().chain(&basis) {
             let share = dot(&rest, other) / dot(other, other);
             let parts = rest.iter_mut().zip(other);

@@ -47,7 +47,7 @@ fn sources() -> PathBuf {
     Path::new(manifest).parent().unwrap().join("lua-5.3.6")
 }
 
-/// Copies a source file of Lua, with the limits of the autopilot.
+/// Copies a source file of the Lua interpreter and replaces its limits by those of the autopilot.
 fn limited(source: &Path, folder: &Folder) -> PathBuf {
     let mut text = std::fs::read_to_string(source).unwrap();
     let name = source.file_name().unwrap().to_str().unwrap();

@@ -78,7 +78,8 @@ fn differ(expected: &[RecordOutput], found: &[RecordOutput], what: &str) -> (f64
             expected.0
         );
         let difference = (expected.1 - found.1).abs();
-        // A sample exactly as old as a window is inside for one clock and outside for the other.
+        // A sample that is exactly as old as a window is inside for one clock and outside for the other; one such
+        // difference is allowed.
         if difference > TOLERANCE_PCT && difference < 1.0 && at_edge == 0 {
             at_edge += 1;
         } else {
@@ -401,7 +402,7 @@ fn a_damaged_script_does_not_block_arming() {
     let whole = text.len();
     let misspelled = text.replacen("function judge(", "function judge((", 1);
     let first = text.find('\x0c').unwrap();
-    // Anywhere after the loader, within or between lines, but not at the beginning of a comment.
+    // The script is cut anywhere after the loader, within or between lines, but not at the beginning of a comment.
     let ends =
         (first..whole)
             .step_by(whole / 40)

@@ -33,8 +33,8 @@ fn model(text: &str) -> Model {
 fn write(folder: &Folder, name: &str, model: &Model, format: Format, points: usize) {
     let written = flagred_interchange::write(model, format, Losses::Refuse);
     let written = written.unwrap_or_else(|findings| panic!("{name}: {findings}"));
-    // fuzzylite samples the set. Therefore the expected values are those of the written text when it is read back, because
-    // this also samples.
+    // fuzzylite samples the set, and so does the rule set that is read back from the written text. Therefore the
+    // expected values are those of that rule set.
     let read = flagred_interchange::read(&written.text, format, Losses::Refuse).unwrap();
     let engine = Engine::new(&read.model).unwrap();
     let names = engine.input_names().chain(engine.output_names());

@@ -70,7 +70,7 @@ fn random(seed: u64) -> Model {
 #[ignore = "needs Octave with the fuzzy-logic-toolkit: tests/peer/octave.sh"]
 fn octave_computes_the_same_values_from_exported_files() {
     let folder = Folder::new();
-    // Octave needs a tenth of a second for a point.
+    // Octave needs a tenth of a second for each point, so there are few.
     for (name, text) in SHIPPED {
         write(&folder, name, &model(text), Format::Fis, 4);
     }

@@ -371,8 +371,8 @@ fn a_damaged_plan_is_refused_or_can_be_pushed() {
             }
             if round % 4 == 3 {
                 let count = copied.counts[random.below(copied.counts.len())];
-                // SAFETY: the pointer is to a count of the plan, which is in its box. A smaller count is valid for the
-                // array too.
+                // SAFETY: the pointer is to a count in the plan, which stays in its box. A smaller count is also valid
+                // for the array.
                 unsafe { *count = random.below(*count + 1) };
             }
             let plan = &*copied.plan;

@@ -91,7 +91,7 @@ impl Place<'_> {
         let text = edited(document.text(), &edits);
         let read = fuzzy::yaml::read(&text).ok();
         let read = read.and_then(|tree| format::read_partly(&tree));
-        // Compared as JSON: an unreadable range is NaN, which does not equal itself.
+        // The models are compared as JSON, because an unreadable range is NaN, which does not equal itself.
         let means = |model: &fuzzy::Model| serde_json::to_value(model).ok();
         match read.is_some_and(|read| means(&read.model) == means(&wanted)) {
             true => Ok(edits),

@@ -29,7 +29,7 @@ pub(super) fn similar(term: &Term, of: &Variable, shape: &str) -> Option<Members
     let at = |i: usize| of.low + width * (i as f64 / STEPS as f64);
     let degree = |i: usize| term.membership_function.membership(at(i));
     let highest = (0..=STEPS).map(degree).fold(0.0, f64::max);
-    // The first and the last position with at least a share of the highest degree.
+    // Returns the first and the last position whose degree is at least `share` of the highest degree.
     let reaching = |share: f64| {
         let mut there = (0..=STEPS).filter(|i| degree(*i) >= share * highest && highest > 0.0);
         let first = there.next()?;
@@ -92,7 +92,7 @@ pub(super) fn similar(term: &Term, of: &Variable, shape: &str) -> Option<Members
             width: half_width,
             slope: 2.0,
         },
-        // It falls if the term reaches the lower end of the range, and only that one.
+        // The sigmoid falls if the term is highest at the lower end of the range, but not at the upper end.
         "sigmoid" => match top_start <= of.low && top_stop < of.high {
             true => Shape::Sigmoid {
                 inflection: half_stop,

@@ -141,7 +141,7 @@ fn a_term_gets_another_shape_at_the_same_place() {
             "{text}\n{}",
             document.findings()
         );
-        // From there back to a shoulder.
+        // The term can be changed back to a shoulder.
         let back = after(&text, |d| set_shape(d, (1, 1), "right_shoulder")).unwrap();
         assert_eq!(
             fields(&Document::new(back, |_| None), 1, 1).unwrap().shape,
@@ -152,7 +152,7 @@ fn a_term_gets_another_shape_at_the_same_place() {
     assert!(refused.starts_with("`circle` is not one of the shapes triangle,"));
     let refused = after(&starter(), |d| set_shape(d, (0, 1), "gaussian")).unwrap_err();
     assert_eq!(refused, "a term of this kind (peak) is edited in the text");
-    // The height stays.
+    // The height does not change.
     let text = after(TYPE2, |d| set_shape(d, (0, 2), "triangle")).unwrap();
     assert!(text.contains("\n        height: 0.9\n"), "{text}");
 }

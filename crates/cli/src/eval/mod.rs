@@ -177,7 +177,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 Ok(of_rows) => tally = of_rows,
                 Err(failure) => failed = Some(failure),
             }
-            // If this fails, the partial table is discarded.
+            // An error here discards the partial table.
             failed
                 .as_ref()
                 .map_or(Ok(()), |_| Err(io::ErrorKind::InvalidData.into()))

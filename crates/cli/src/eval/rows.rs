@@ -135,7 +135,7 @@ impl<'p> Evaluator<'p> {
         let is_whole = misfit.is_none();
         let mut problems: Vec<String> = misfit.into_iter().collect();
         for (values, column) in self.columns.iter_mut().zip(&self.plan.inputs) {
-            // The cells of a row with another number of cells may be in other columns.
+            // If a row has the wrong number of cells, its cells may be in the wrong columns.
             let text = match is_whole {
                 true => record.get(*column).unwrap_or_default(),
                 false => b"",

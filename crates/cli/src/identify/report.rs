@@ -197,8 +197,8 @@ struct Validation {
     mean: IntervalDocument,
     /// `identified` divided by `linear`.
     ratio: IntervalDocument,
-    /// The confusion matrix of the cross-validation, if the target has 2 to 10 whole numbers; else
-    /// null.
+    /// The confusion matrix of the cross-validation, if the target contains classes (2 to 10 distinct values, all whole
+    /// numbers, with at least 5 rows each on average); else null.
     confusion: Option<ConfusionDocument>,
 }
 

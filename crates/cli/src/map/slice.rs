@@ -85,7 +85,7 @@ pub(super) fn axes(arguments: &Arguments, evaluated: &MapSource) -> Result<Axes,
     let variable = |input: usize| model.inputs.get(input);
     let axis = |input: usize, choice: &Option<AxisChoice>| {
         let part = choice.as_ref().and_then(|choice| choice.part);
-        // Numbers are compared with later ones, so that they show every value of the inputs.
+        // Tables of numbers cover the whole range of each input, so that they can be compared with later tables.
         let shown = |v: &Variable| match arguments.csv || arguments.values {
             true => Scale::new(v.low, v.high),
             false => slice::shown(v),

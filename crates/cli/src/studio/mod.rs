@@ -84,7 +84,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         // Sending fails only for a second interrupt, after the first has been received.
         let _ = interrupt.send(());
     })
-    .map_err(|error| Failure::unreadable(format!("interrupts cannot be caught: {error}")))?;
+    .map_err(|error| Failure::unreadable(format!("cannot set the handler for Ctrl-C: {error}")))?;
     let (listener, address) = TcpListener::bind((Ipv4Addr::LOCALHOST, arguments.port))
         .and_then(|listener| listener.local_addr().map(|address| (listener, address)))
         .map_err(|error| cannot_serve(arguments.port, &error))?;

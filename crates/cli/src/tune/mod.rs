@@ -169,8 +169,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
-    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))
-        .map_err(|error| Failure::unreadable(format!("interrupts cannot be caught: {error}")))?;
+    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(|error| {
+        Failure::unreadable(format!("cannot set the handler for Ctrl-C: {error}"))
+    })?;
     let mut watch = SearchObserver::new(arguments, stop, checkpoint.as_ref());
     let tuned = tune(begun, &data, &settings, &mut |progress| {
         watch.step(progress, None)
@@ -447,7 +448,7 @@ impl<'a> SearchObserver<'a> {
             Some(fold) => format!("validation, part {}", fold + 1),
         });
         if fold.is_none() && self.kept.elapsed() > BETWEEN {
-            // A later attempt may succeed. If the last one fails, it is an error.
+            // A later attempt may succeed. A failure of the last attempt is an error.
             if let Err(failure) = self.keep(progress.model)
                 && !std::mem::replace(&mut self.is_refused, true)
             {

@@ -250,8 +250,8 @@ struct ValidationDocument {
     gain: IntervalDocument,
     /// The cross-validated predictions in ten bins, if the outcomes are 0 and 1; else empty.
     reliability: Vec<BinDocument>,
-    /// The confusion matrix of the cross-validation, if the column of the output has 2 to 10 whole
-    /// numbers; else null.
+    /// The confusion matrix of the cross-validation, if the output's column contains classes (2 to 10 distinct values,
+    /// all whole numbers, with at least 5 rows each on average); else null.
     confusion: Option<ConfusionDocument>,
 }
 
@@ -275,7 +275,7 @@ struct CurvePointDocument {
 
 #[derive(Serialize, JsonSchema)]
 struct ChangedNumberDocument<'a> {
-    /// `variable.term`, or `rule 3`.
+    /// The term (`variable.term`) or rule (`rule 3`) whose number changed.
     of: &'a str,
     /// The number that moved, such as `peak`.
     name: &'a str,

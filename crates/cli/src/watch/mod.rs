@@ -157,8 +157,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
-    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))
-        .map_err(|error| Failure::unreadable(format!("interrupts cannot be caught: {error}")))?;
+    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(|error| {
+        Failure::unreadable(format!("cannot set the handler for Ctrl-C: {error}"))
+    })?;
     let key = arguments.key.as_deref().map(read_key).transpose()?;
     if arguments.all {
         let how = (arguments.jsonl, !arguments.no_wait);

@@ -339,11 +339,11 @@ fn serve(
         if open.received_at.elapsed() < CLIENT_SILENT {
             return PortEvent::Nothing;
         }
-        // Drops waiting connections that closed.
+        // Drops waiting connections that have been closed.
         waiting.retain(|next| !matches!(peek(&next.stream), Ok(0)));
         let is_sending = |next: &Client| matches!(peek(&next.stream), Ok(1..));
         let Some(index) = waiting.iter().position(is_sending) else {
-            // If all waiting connections are silent, the oldest is dropped for another one.
+            // If all waiting connections are silent, the oldest is dropped to make room for another one.
             if waiting.len() == MAX_WAITING {
                 waiting.remove(0);
             }

@@ -434,7 +434,7 @@ impl<'e> Session<'e> {
         }
         out.events.push(Event::Risk { update });
         let before = std::mem::replace(&mut watch.level, update.level);
-        // A notice that is raised while the level is unchanged is reported, too.
+        // A notice is also reported if it is raised while the level does not change.
         let raised = watch.raised_notice();
         let is_new = match (before, update.level) {
             (None, Some(level)) => level > Level::Good,

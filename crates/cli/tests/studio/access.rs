@@ -61,7 +61,7 @@ fn requests_of_others_are_refused() {
         request(&file, authority, &format!("Origin: {own}\r\n")).status,
         200
     );
-    // Another page may use a name that resolves to this machine.
+    // A foreign page may reach this server under its own host name (DNS rebinding).
     for host in [
         "evil.example",
         &format!("evil.example:{port}"),

@@ -83,7 +83,7 @@ pub(crate) fn head(evaluation: &Evaluation) -> Vec<String> {
         let vehicles = first.by_vehicle.len();
         let share = percent(evaluation.critical, cases, 2);
         return vec![format!(
-            "{} of {}, {share} of them critical",
+            "{} of {}; {share} of the flights are critical",
             count(cases, "flight"),
             count(vehicles, "vehicle")
         )];
@@ -125,7 +125,7 @@ pub(crate) fn left_out(evaluation: &Evaluation) -> BTreeMap<String, usize> {
     reasons
 }
 
-/// The areas of each estimator.
+/// Returns the table of the areas under the ROC and precision-recall curves, with a row for each estimator.
 fn areas(evaluation: &Evaluation) -> Table {
     let cases = evaluation.cases;
     let has_steps = evaluation.horizon_s.is_some();

@@ -95,7 +95,7 @@ impl<'o> Collector<'o> {
         if is_same {
             return true;
         }
-        // Within one boot a second, different definition of a type is damage.
+        // Within one boot, a second and different definition of a type is damage.
         if is_known && !self.redefine {
             self.report
                 .bad(&format!("message `{}` is defined twice", format.name));
@@ -141,7 +141,7 @@ impl<'o> Collector<'o> {
             return;
         }
         let Some((column, unit)) = kind.time else {
-            // An event without a time is useless; the commands are the better source.
+            // Events without a time are ignored, because the commands show the state better.
             if !matches!(
                 kind.role,
                 MessageRole::Event(_) | MessageRole::Arm(_) | MessageRole::Nothing

@@ -73,7 +73,7 @@ pub(super) fn geometry(flight: &Flight, class: Option<i64>) -> Option<Geometry> 
     if let Some(geometry) = by_outputs(&variance, &alike) {
         return Some(geometry);
     }
-    // With four motors, all layouts span the same space.
+    // With four motors, all layouts span the same space, so the commands do not distinguish them.
     let mut alike = alike.into_iter().filter(|_| flight.motors.len() > 4);
     let (_, name, factors) = alike.next()?;
     let same: Vec<String> = alike.map(|(_, name, _)| name).collect();

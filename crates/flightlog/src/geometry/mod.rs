@@ -152,7 +152,7 @@ pub(crate) fn of(motors: &[Motor], declared: &DeclaredLayout) -> Option<Geometry
     let layout = match declared {
         DeclaredLayout::Factors { factors, .. } => Some(factors.clone()),
         DeclaredLayout::Frame { class, kind, .. } => {
-            // The type of a tricopter is rarely set, and only one type differs.
+            // The type of a tricopter is rarely set. All types but one have the same layout, so X is assumed.
             let kind = kind.or((*class == tables::TRI).then_some(tables::X));
             kind.and_then(|kind| tables::layout(*class, kind))
         }

@@ -264,8 +264,8 @@ impl Decoder {
     }
 
     fn learn(&mut self, name: String, value: [u8; 4], kind: u8) -> DecoderChange {
-        // PX4 sends the bytes of an integer instead of a float, ArduPilot every number as
-        // a float (<https://mavlink.io/en/services/parameter.html#parameter_encoding>).
+        // PX4 sends the bytes of an integer in place of the float; ArduPilot sends every number as a float
+        // (<https://mavlink.io/en/services/parameter.html#parameter_encoding>).
         let kind = match kind {
             _ if !self.is_px4() => NumberType::F32,
             1 => NumberType::U8,
@@ -353,7 +353,7 @@ impl Decoder {
 }
 
 fn servo_outputs(payload: &Payload) -> ServoOutputs {
-    // The extensions of version 2 follow the port.
+    // In MAVLink 2, the outputs from 9 on follow the port.
     let offset = |output: usize| {
         if output < 8 {
             4 + 2 * output

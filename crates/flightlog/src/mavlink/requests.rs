@@ -171,7 +171,7 @@ impl Requests {
             self.rate_tries = 1;
             return;
         }
-        // The first two requests use the new command, further requests alternate between the two.
+        // The first two requests use the new command; further ones alternate between the old and the new command.
         let old_way = telemetry.interval_refused()
             || self.rate_tries >= 2 && self.rate_tries.is_multiple_of(2);
         self.has_old_way |= old_way;

@@ -347,7 +347,7 @@ impl Telemetry {
             self.landed_state_s = Some(now_s);
         }
         self.has_commands |= id == RATED[0];
-        // The two ports of one row of commands count once.
+        // The messages of the two ports of one row of commands are counted as one.
         let is_other_port = id == RATED[0] && usize::from(payload[20]) != self.last_port;
         let index = RATED.iter().position(|&rated| rated == id);
         if let Some(index) = index.filter(|_| !is_other_port) {
@@ -416,7 +416,7 @@ impl Telemetry {
             return TelemetryChange::Nothing;
         }
         if port != self.last_port {
-            // The port that completes the commands follows, with the same time.
+            // The message of the last port, which completes the row, follows with the same time.
             self.outputs[port] = (outputs.pulses_us, true);
             return TelemetryChange::Nothing;
         }

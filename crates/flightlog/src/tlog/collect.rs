@@ -167,7 +167,7 @@ impl SystemState {
         self.has_port_0 |= port == 0;
         let first = port == 0 || !self.has_port_0;
         let before = u16::from(port) * OUTPUTS_A_PORT as u16;
-        // An output that is not driven is 0, as are outputs above 8 in version 1.
+        // Outputs that are not driven are 0. In MAVLink 1, so are outputs above 8.
         let pulses = (1..).zip(outputs.pulses_us).filter(|&(_, us)| us > 0);
         let pulses = pulses.map(|(output, us)| (before + output, f64::from(us)));
         self.outputs.add(t_s, first, pulses)

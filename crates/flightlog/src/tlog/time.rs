@@ -99,7 +99,7 @@ impl VehicleTime {
         let own = BOOT_MS
             .contains(&id)
             .then(|| number(payload, 0, NumberType::U32));
-        // The clock continues across boots, while the clock of the message restarts.
+        // `self.clock` continues across boots, while the time in a message restarts.
         let own_s = own.flatten().map(|ms| ms * 1e-3 + self.clock.offset_s());
         own_s
             .filter(|own_s| (own_s - commands_s).abs() <= LATE_S)

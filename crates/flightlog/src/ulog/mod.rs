@@ -85,7 +85,7 @@ impl Scanner<'_> {
     /// Handles the start of `bytes`, at `offset` in the file; returns the number of bytes handled. After `room` bytes,
     /// damage cannot be distinguished from a message that continues after the window.
     fn step(&mut self, bytes: &[u8], offset: u64, room: usize) -> usize {
-        // Appended data starts with a message, even inside the previous message.
+        // At the offset of appended data a new message starts, even if the previous message is not complete.
         let next = self.appended.iter().find(|&&start| start > offset);
         let limit = next.and_then(|start| usize::try_from(start - offset).ok());
         let within = &bytes[..limit.unwrap_or(bytes.len()).min(bytes.len())];

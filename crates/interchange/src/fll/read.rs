@@ -107,8 +107,8 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
         if !draft.has_room(count, MAX_VARIABLES, "inputs", section.name) {
             break;
         }
-        // Values outside the range always count as the nearest value inside, whatever the flag; it must still be
-        // readable.
+        // Values outside the range always count as the nearest value inside, whatever `lock-range` is. It is read only
+        // to report an invalid value.
         flag(&mut draft, section, "lock-range");
         if let Some((variable, spans)) = variable(&mut draft, section, &inputs) {
             draft.model.inputs.push(variable);

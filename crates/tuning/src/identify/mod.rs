@@ -142,8 +142,8 @@ pub fn check_columns(columns: usize) -> Result<(), TuneError> {
 /// enough. Peaks are at rounded quantiles; consequents are computed by least squares with a ridge. [`crate::tune`] can
 /// improve both afterwards.
 ///
-/// The error of a step is computed on rows that were not used for its consequents, but the steps were chosen by it, so
-/// it is optimistic. [`cross_validate`] cross-validates the whole search.
+/// The error of a step is computed on rows that were not used for its consequents. But because steps are chosen to make
+/// this error small, it is optimistic. [`cross_validate`] cross-validates the whole search.
 ///
 /// # Errors
 /// If the rows cannot be used, if a name is unknown, or if no input reduces the error.

@@ -87,7 +87,7 @@ struct Member<'a> {
 impl Finder<'_> {
     /// Adds the changes that remove a rule or a part of a rule, in case it has no effect.
     fn drops(&self, changes: &mut Vec<Change>) {
-        // Of two equal rules, the first is kept.
+        // The rules are visited in reverse order, so that the first of two equal rules is kept.
         for (slot, derived, parts) in self.rules.iter().rev() {
             changes.push(Change {
                 empty: vec![*slot],

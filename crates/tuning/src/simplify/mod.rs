@@ -183,7 +183,7 @@ pub fn simplify(
         })
     };
     let mut slots: RuleSlots = rules.map(derived).collect();
-    // After a reduction, another disjunction may reduce the rules further.
+    // After a reduction, another operator for OR may reduce the rules further.
     loop {
         let before = total_size(&slots);
         let mut best = (before, short.operators.or, slots.clone());

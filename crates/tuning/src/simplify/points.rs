@@ -17,8 +17,9 @@ pub(crate) const BETWEEN: usize = 40_000;
 /// The number of points per rule at which the rule fires.
 pub(crate) const FOR_EACH_RULE: usize = 50;
 
-/// The points, as one column for each input: all combinations of the corners of its terms and the middles between them;
-/// random points between these values; and points at which each rule fires. They are in random order.
+/// The points, in random order, as one column for each input: combinations of the corners of its terms and of the
+/// midpoints between them (all, or a random choice if there are too many), random points between the corners, and
+/// points at which each rule fires.
 pub(crate) fn points(model: &Model, seed: u64) -> Vec<Vec<f64>> {
     let mut random = fastrand::Rng::with_seed(seed);
     let bends: Vec<Vec<f64>> = model.inputs.iter().map(bends).collect();

@@ -23,7 +23,8 @@ pub(crate) fn interval(
     }
     let latest = statistic.is_of_bins().then(|| (0.0, bin.moments()));
     let parts = window.parts().chain(latest);
-    // The mean of a quantity whose sum over a part, times its weight, is given.
+    // Returns the mean of a quantity over the window. For each part of the window, `sum` returns the quantity times the
+    // weight of the part.
     let mean = |sum: &dyn Fn(f64, &Moments) -> f64| {
         let parts = parts.clone();
         SampledMean::of(parts.map(|(t_s, part)| (part.weight(), sum(t_s, &part))))
@@ -66,7 +67,8 @@ pub(crate) fn interval(
             around(influence.half_width)
         }
         Statistic::Percentile(percent) => {
-            // Woodruff 1952: the percentiles at the ends of the interval of the share below.
+            // The method of Woodruff (1952): an interval of the share of values below the percentile gives two
+            // percentages, whose percentiles are the ends.
             let below = mean(&|_, part| match part.mean() {
                 Some(value) if value < known.value => part.weight(),
                 _ => 0.0,
@@ -155,7 +157,8 @@ mod tests {
         for (statistic, truth, expected) in rows {
             let (share, width) = coverage(statistic, 2.0, truth, independent);
             assert!(expected.contains(&share), "{statistic:?}: {share}");
-            // Four times as many samples halve the width; the rate is also over four times the time.
+            // Four times as many samples halve the width. For the rate, they also cover four times the time, which
+            // divides the width by four again.
             let (_, longer) = coverage(statistic, 8.0, truth, independent);
             let ratio = match statistic {
                 Statistic::Rate => 8.0,

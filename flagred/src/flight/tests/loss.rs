@@ -140,7 +140,7 @@ fn samples_that_are_ignored_for_their_times_are_a_reason_for_no_verdict() {
     let ignored = "200 samples in the air were ignored: their times are unknown or go back";
     assert_eq!(around(|_| f64::NAN), ignored);
     assert_eq!(around(|i| 19.0 + f64::from(i % 20) * 0.04), ignored);
-    // Samples at the same time as the one before are not ignored.
+    // Samples with the same time as the previous one are not ignored.
     assert_eq!(around(|_| 19.96), "GOOD");
     // A time that goes far back begins a new flight.
     let mut assessor = Assessor::new(&shipped::flagred(), Craft::new(4), None).unwrap();

@@ -111,7 +111,10 @@ fn input(
             && keys.contains(&word)
             && let Some(finding) = found.iter_mut().find(|one| one.span == entry.key_span)
         {
-            finding.help = Some(format!("exchange them: `{{{word}: {}}}`", entry.key));
+            finding.help = Some(format!(
+                "exchange the key and the value: `{{{word}: {}}}`",
+                entry.key
+            ));
         }
         // For example `{p95: motor_margin}`.
         if let Some(percent) = entry
@@ -403,7 +406,7 @@ fn signal(node: &Node, what: &str, found: &mut Mistakes) -> Option<(Motors, Sign
                 let message = match given.contains(&"unknown_below") {
                     true => format!("`unknown_below` of {what} is only for `ratio`"),
                     false => format!(
-                        "{over} is one of `mean`, `std`, `min`, `max`, `motor`, `difference`, `ratio` and `product`"
+                        "{over} must be one of `mean`, `std`, `min`, `max`, `motor`, `difference`, `ratio` and `product`"
                     ),
                 };
                 found.push(

@@ -184,7 +184,8 @@ fn fewer(knots: Vec<Knot>, area: impl Fn(f64, f64) -> f64) -> Vec<Knot> {
     for knot in knots {
         match (kept.last(), last) {
             (Some(from), Some(last)) => {
-                // Tails may end anywhere before the knot, and the error of a symmetric kink cancels at the knot itself.
+                // Three positions are compared, because tails may end anywhere before the knot, and because the error
+                // of a symmetric kink cancels at the knot itself.
                 let agree = [0.37, 0.71, 1.0].into_iter().all(|part| {
                     let x = last.x + part * (knot.x - last.x);
                     let known = last.area - from.area + area(last.x, x);

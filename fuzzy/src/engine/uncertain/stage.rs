@@ -173,7 +173,7 @@ impl RangedStage {
         for (input, of_term) in found {
             corners.get_mut(input)?.extend(of_term);
         }
-        // Strengths below the least strength count as 0 both at a vertex and elsewhere.
+        // The factor is 2 because strengths below the least strength count as 0 both at a vertex and elsewhere.
         Some(2.0 * f64::from(count) * self.least_strength / least_weight)
     }
 
@@ -294,7 +294,7 @@ impl RangedStage {
         match rule.activation {
             Activation::General => (low, high),
             Activation::Proportional => {
-                // Each rule counts once, even if its hedges split it.
+                // Each rule counts once, even if hedges split it into several programs.
                 let (mut others, mut latest) = ((0.0, 0.0), None);
                 for (other, strength) in self.rules.iter().zip(of_rules) {
                     let again = latest.replace(other.draft.rule) == Some(other.draft.rule);

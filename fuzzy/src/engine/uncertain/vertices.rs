@@ -80,7 +80,7 @@ impl EndSearch<'_> {
         loop {
             self.point(&point);
             for (least, outcome) in least.iter_mut().zip(&self.outcomes) {
-                // Without a value at one vertex, no rule may fire somewhere.
+                // If the output has no value at a vertex, the coverage there counts as 0.
                 let coverage = outcome.value().map_or(0.0, |_| outcome.coverage);
                 *least = least.min(coverage);
             }

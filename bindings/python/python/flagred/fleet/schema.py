@@ -32,7 +32,7 @@ def _schema(*columns: tuple[str, pa.DataType, str, str]) -> pa.Schema:
 
 
 FLIGHTS = _schema(
-    ("log!", _TEXT, "", "the address of the log, without keys of the storage"),
+    ("log!", _TEXT, "", "the address of the log, without the access keys of the storage"),
     ("bytes!", pa.int64(), "B", "its size"),
     ("modified_utc", pa.timestamp("us", "UTC"), "", "when it was last modified"),
     ("identity!", _TEXT, "", "size and modification time: if they change, the log counts as changed"),
@@ -42,7 +42,7 @@ FLIGHTS = _schema(
     ("flight_id!", _TEXT, "", "identifies the flight in all tables"),
     ("status!", _TEXT, "", "assessed, unreadable, unavailable (the storage did not deliver it), crashed (it crashed its worker) or failed"),
     ("error", _TEXT, "", "why it was not assessed"),
-    ("vehicle", _TEXT, "", "the vehicle: a folder vehicle=NAME of the log, else vehicle_id"),
+    ("vehicle", _TEXT, "", "the vehicle: NAME, if the log is in a folder vehicle=NAME, else vehicle_id"),
     ("vehicle_id", _TEXT, "", "the identifier of the vehicle in the log"),
     ("vehicle_id_source", _TEXT, "", "the source of vehicle_id"),
     ("system_id", pa.int16(), "", "its MAVLink system id, which vehicles may share"),
@@ -82,7 +82,7 @@ FLIGHTS = _schema(
 
 FINDINGS = _schema(
     ("flight_id!", _TEXT, "", "identifies the flight in all tables"),
-    ("vehicle", _TEXT, "", "the vehicle: a folder vehicle=NAME of the log, else vehicle_id"),
+    ("vehicle", _TEXT, "", "the vehicle: NAME, if the log is in a folder vehicle=NAME, else vehicle_id"),
     ("severity!", _TEXT, "", "INFO, WARN or FAIL"),
     ("measure!", _TEXT, "", "risk, elevated_risk, or the subject of a notice"),
     ("from_s!", _REAL, "s", "when it began, on the clock of the log"),

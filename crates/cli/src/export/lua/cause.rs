@@ -77,7 +77,8 @@ fn output_named<'e>(estimator: &'e Estimator, name: &str) -> Option<&'e Variable
 /// Returns the rules that conclude the output of a proposition, each as its number and the degree that the proposition
 /// has if only this rule fires.
 fn leads(estimator: &Estimator, proposition: &Proposition) -> String {
-    // The smallest degree, so that, as in the monitor, the strongest rule is chosen if the degree is 0 for all rules.
+    // A lower degree is replaced by this one. If the degree is 0 for all rules, the strongest rule is then chosen, as
+    // in the monitor.
     const NOT_AT_ALL: f64 = 1e-9;
     let output = proposition.variable.text.as_str();
     let model = estimator.model();

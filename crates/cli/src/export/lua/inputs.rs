@@ -136,7 +136,7 @@ pub(super) fn fill(
     let extremes = made.iter().any(|line| line.contains("est\")"));
     filling.set("extremes", extremes);
     filling.constant("NONE", if extremes { "list.none" } else { "0.0" }.into());
-    // The window of the elevated risk.
+    // The elevated risk needs a window, too.
     size.windows += 1;
     size.rows += 1;
     size.numbers += 4 * elevated_capacity(plan) as usize;

@@ -52,9 +52,9 @@ const SCRIPT: [(&str, &str); 13] = [
     ("BIN_US", "100000"),
     // Maximum number of slots of a window.
     ("SLOTS", "128"),
-    // Maximum time: `later` does not add to a longer time.
+    // The maximum time of a counter: `later` does not increase a time that has reached it.
     ("LONG_US", "1000000000"),
-    // Bytes of a test string. Creating it takes twice as much memory; so much must be free for the temporary values of
+    // Bytes of a test string. Creating it takes twice as much memory, which must be free for the temporary values of
     // calls.
     ("RESERVE_BYTES", "3000"),
     // Severities of MAVLink.

@@ -123,8 +123,8 @@ impl Script {
             return (counted(&value, channel.threshold, squared), None);
         }
         match (channel.threshold, statistic) {
-            // Outputs are whole microseconds. A value equal to the limit does not count as above or
-            // below it, despite its rounding error.
+            // Outputs are whole microseconds, so values are rounded. A value that is equal to the limit except for
+            // rounding does not count as above or below it.
             (Some(Threshold::Below(limit)), _) => (
                 self.of_list("share_of_below", list, Some(limit - ROUNDING)),
                 None,

@@ -299,7 +299,7 @@ fn a_flight_at_the_limit_is_reported_once_per_level() {
     let text = bench.said();
     assert!(text.starts_with("FLAGRED: FAIL risk "), "{text}");
     assert!(text.ends_with(" %, lower limit, motor 1"), "{text}");
-    // Values are sent for half a minute of the receiver's clock, four times a second.
+    // For half a minute of the receiver's clock, values are sent four times a second.
     let values = bench.count_sent(|message| matches!(message, MavMessage::NAMED_VALUE_FLOAT(_)));
     assert!((160..=260).contains(&values), "{values}");
     let mut out = SessionOutput::default();

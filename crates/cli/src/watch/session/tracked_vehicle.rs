@@ -217,7 +217,7 @@ impl TrackedVehicle {
         };
         let hurries =
             !done && self.watch.is_none() && !self.history.is_empty() && waited_s >= HURRY_S;
-        // A setup that changed on the ground does not apply to the previous flight, which ends with its next commands.
+        // A setup that changed on the ground does not apply to the previous flight, which ends with the next commands.
         if self.watch.as_ref().is_some_and(|watch| watch.is_flying) && !self.telemetry.is_in_air() {
             return None;
         }

@@ -222,7 +222,7 @@ impl WatchSender {
 
     /// Resumes sending if the other watch is gone, and sends the texts that it did not send.
     pub(super) fn tick(&mut self, now_s: f64, system: u8, out: &mut SessionOutput) {
-        // The texts are sorted by their time.
+        // The texts are sorted by the time at which they are due.
         while (self.waiting.front()).is_some_and(|text| now_s >= text.due_s) {
             if let Some(text) = self.waiting.pop_front() {
                 self.send_message(text.to, &text.message, out);

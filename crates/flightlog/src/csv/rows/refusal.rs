@@ -4,10 +4,10 @@ use super::{RowCollector, problem};
 use crate::ReadError;
 
 const HELP_PULSES: &str = "name columns of fractions from 0 to 1 `motor1`..; divide percent by 100 first; for DShot see docs/flight-csv.md";
-/// The smallest step between motor commands that is recognised as milliseconds.
+/// The minimum median step of `t_s` between motor commands from which whole-number times count as milliseconds.
 const MIN_STEP_MS: f64 = 2.0;
 const MIN_STEPS: usize = 5;
-/// The smallest step between motor commands that is recognised as microseconds: 1 kHz.
+/// The minimum median step of `t_s` between motor commands from which whole-number times count as microseconds: 1 kHz.
 const MIN_STEP_US: f64 = 1000.0;
 
 impl RowCollector {

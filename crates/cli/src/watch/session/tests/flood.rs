@@ -50,7 +50,7 @@ fn stranger(random: &mut Rng) -> (Source, Vec<u8>) {
     (source, bytes)
 }
 
-/// A link within the process: bytes as they arrive, one packet at a time.
+/// A link inside the process. It takes bytes as they arrive and passes them on packet by packet.
 struct Link<'e> {
     bench: Bench<'e>,
     stream: Stream,

@@ -415,7 +415,7 @@ fn an_unknown_message_of_the_vehicle_is_ignored() {
     };
     assert!(!receive(&other));
     assert!(out.events.is_empty());
-    // If nothing else arrives on a link, it is lost: messages that cannot be verified do not count.
+    // The link is lost, because messages that cannot be verified do not count as traffic.
     bench.wait(2.5);
     assert!(bench.session.view().unwrap().link_lost);
 }
