@@ -203,7 +203,7 @@ fn compiled<E>(profile: &Profile, file: String, source: Source) -> Result<Source
             profile.name
         ))
         .help(match Path::new(&file).extension().and_then(OsStr::to_str) {
-            Some("fis" | "fll" | "fcl" | "fml") => format!(
+            Some("fis" | "t2fis" | "fll" | "fcl" | "fml") => format!(
                 "a profile needs a rule set in YAML: `flagred import {file} --output {}`",
                 Path::new(&file).with_extension("yaml").display()
             ),

@@ -27,9 +27,14 @@ pub enum PlanError {
         /// The output.
         output: String,
     },
-    /// The rule set has interval type-2 terms.
-    #[error("the rule set has type-2 terms, which cannot be written as a table")]
-    Type2,
+    /// An output whose terms are fuzzy sets is an interval, because the rule set has interval type-2 terms.
+    #[error(
+        "the interval of output `{output}` is computed from fuzzy sets, so it cannot be written as a table"
+    )]
+    Type2 {
+        /// The output.
+        output: String,
+    },
     /// The profile has several risks.
     #[error(
         "the profile has the risks `{output}` and `{other}`, but exported code supports only one"
@@ -54,8 +59,9 @@ impl PlanError {
             PlanError::KeepsPrevious { .. } => {
                 "set `when_no_rule_fires` to a number, such as 0, or leave that key out"
             }
-            PlanError::Type2 => {
-                "remove the lower membership functions: then the export contains only the upper ones"
+            PlanError::Type2 { .. } => {
+                "use `type_reduction: nie_tan` or `begian_melek_mendel` with operators that have a closed form, or \
+                 `weighted_average` of numbers, whose exact interval can be written"
             }
             PlanError::SeveralRisks { .. } => {
                 "write a profile for each risk, and run a monitor for each: the findings are the same"
@@ -68,7 +74,7 @@ impl PlanError {
 ///
 /// # Errors
 ///
-/// If an output has no closed form, or keeps its previous value, or the rule set has type-2 terms.
+/// If an output has no closed form, or keeps its previous value.
 pub fn rules(engine: &Engine) -> Result<Rules<'_>, PlanError> {
     let mut outputs = engine.model().outputs.iter();
     if let Some(output) = outputs.find(|output| output.keeps_previous()) {
@@ -84,9 +90,6 @@ pub(crate) fn rules_for(
     engine: &Engine,
     mut outputs: Range<usize>,
 ) -> Result<Rules<'_>, PlanError> {
-    if engine.model().has_type2_terms() {
-        return Err(PlanError::Type2);
-    }
     let (chain, table) = (engine.chain(), engine.table());
     let open = match (chain, table) {
         (Some(chain), _) => outputs.find_map(|output| chain.open(output).next()),
@@ -101,13 +104,20 @@ pub(crate) fn rules_for(
             stages: chain.map_or(&[], |chain| chain.stages),
             places: chain.map_or(&[], |chain| chain.places),
         }),
-        (open, _) => Err(PlanError::NoClosedForm {
-            output: engine
-                .output_names()
-                .nth(open.unwrap_or_default())
-                .unwrap_or_default()
-                .into(),
-        }),
+        (open, _) => {
+            let index = open.unwrap_or_default();
+            let name = engine.output_names().nth(index).unwrap_or_default();
+            let output = String::from(name);
+            let model = engine.model();
+            let is_interval = model
+                .outputs
+                .get(index)
+                .is_some_and(|of| model.has_interval(of));
+            Err(match is_interval {
+                true => PlanError::Type2 { output },
+                false => PlanError::NoClosedForm { output },
+            })
+        }
     }
 }
 

@@ -60,6 +60,8 @@ int main(int count, char **arguments) {
             const flagred_outcome *said = &outcomes[i];
             printf("%s%d", i > 0 ? ", " : "", (int)said->state);
             bits(said->value);
+            bits(said->low);
+            bits(said->high);
             bits(said->coverage);
             printf(" %d %d", (int)said->dominant_rule, (int)said->clamped);
         }

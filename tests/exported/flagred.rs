@@ -1,5 +1,5 @@
 // The profile `flagred` with the rule set `flagred`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 4360 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 123360 bytes of memory.
+// 4368 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 123360 bytes of memory.
 
 /// The memory of a monitor for this number of motors.
 #[allow(dead_code)]
@@ -156,7 +156,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
                 ],
                 blocks: &[],
                 outputs: &[
-                    Output { low: 0.0, high: 100.0, default_value: NaN, form: 2, first: 0, end: 5, first_strength: 0, end_strength: 5, clamps: 0 },
+                    Output { low: 0.0, high: 100.0, default_value: NaN, form: 2, first: 0, end: 5, first_strength: 0, end_strength: 5, clamps: 0, reduction: 0, lower: 0 },
                 ],
                 pairs: &[],
                 layered_sets: &[],

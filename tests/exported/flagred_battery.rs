@@ -1,5 +1,5 @@
 // The profile `flagred-battery` with the rule set `flagred-battery-rules.yaml`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 9780 bytes of constants, 5560 of them to fill gaps of the rules. A monitor of 4 motors takes 72280 bytes of memory.
+// 9788 bytes of constants, 5560 of them to fill gaps of the rules. A monitor of 4 motors takes 72280 bytes of memory.
 // Signals of a sample, in this order: battery_remaining_pct.
 
 /// The memory of a monitor for this number of motors.
@@ -172,7 +172,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
                 ],
                 blocks: &[],
                 outputs: &[
-                    Output { low: 0.0, high: 100.0, default_value: NaN, form: 1, first: 0, end: 3, first_strength: 0, end_strength: 7, clamps: 0 },
+                    Output { low: 0.0, high: 100.0, default_value: NaN, form: 1, first: 0, end: 3, first_strength: 0, end_strength: 7, clamps: 0, reduction: 0, lower: 0 },
                 ],
                 pairs: &[
                     Pair { area: [[25.0, 50.0], [-12.5, -25.0]], moment: [[-937.5, -1250.0], [312.5, 625.0], [104.16666666666667, 0.0]], width: [25.0, 25.0], middle: [-37.5, -12.5] },

@@ -1,5 +1,5 @@
 // The profile `flagred-paper` with the rule set `flagred-paper`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 3876 bytes of constants, 892 of them to fill gaps of the rules. A monitor of 4 motors takes 55224 bytes of memory.
+// 3884 bytes of constants, 892 of them to fill gaps of the rules. A monitor of 4 motors takes 55224 bytes of memory.
 
 /// The memory of a monitor for this number of motors.
 #[allow(dead_code)]
@@ -123,7 +123,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
                 steps: &[],
                 blocks: &[],
                 outputs: &[
-                    Output { low: 0.0, high: 100.0, default_value: NaN, form: 1, first: 0, end: 3, first_strength: 0, end_strength: 7, clamps: 0 },
+                    Output { low: 0.0, high: 100.0, default_value: NaN, form: 1, first: 0, end: 3, first_strength: 0, end_strength: 7, clamps: 0, reduction: 0, lower: 0 },
                 ],
                 pairs: &[
                     Pair { area: [[25.0, 50.0], [-12.5, -25.0]], moment: [[-937.5, -1250.0], [312.5, 625.0], [104.16666666666667, 0.0]], width: [25.0, 25.0], middle: [-37.5, -12.5] },

@@ -1,7 +1,7 @@
 // The rule set `chain`, written by `flagred export --rust` 0.1.0. Do not edit.
 // Inputs, in this order: x (0 to 10), y (0 to 1).
 // Outputs, in this order: risk (0 to 100), strain (0 to 10), trend (0 to 10), comfort (0 to 10).
-// 4552 bytes of constants. An evaluation takes 800 bytes of memory.
+// 4584 bytes of constants. An evaluation takes 800 bytes of memory.
 
 /// Returns the outcome of each output at the given values of the inputs.
 #[allow(dead_code)]
@@ -139,10 +139,10 @@ pub static RULES: ::fuzzy::table::Chain<'static> = {
             ],
             blocks: &[],
             outputs: &[
-                Output { low: 0.0, high: 10.0, default_value: NaN, form: 2, first: 0, end: 3, first_strength: 0, end_strength: 3, clamps: 0 },
-                Output { low: 0.0, high: 10.0, default_value: 5.0, form: 2, first: 3, end: 5, first_strength: 3, end_strength: 5, clamps: 0 },
-                Output { low: 0.0, high: 10.0, default_value: NaN, form: 2, first: 0, end: 2, first_strength: 0, end_strength: 2, clamps: 0 },
-                Output { low: 0.0, high: 100.0, default_value: NaN, form: 3, first: 0, end: 3, first_strength: 0, end_strength: 3, clamps: 0 },
+                Output { low: 0.0, high: 10.0, default_value: NaN, form: 2, first: 0, end: 3, first_strength: 0, end_strength: 3, clamps: 0, reduction: 0, lower: 0 },
+                Output { low: 0.0, high: 10.0, default_value: 5.0, form: 2, first: 3, end: 5, first_strength: 3, end_strength: 5, clamps: 0, reduction: 0, lower: 0 },
+                Output { low: 0.0, high: 10.0, default_value: NaN, form: 2, first: 0, end: 2, first_strength: 0, end_strength: 2, clamps: 0, reduction: 0, lower: 0 },
+                Output { low: 0.0, high: 100.0, default_value: NaN, form: 3, first: 0, end: 3, first_strength: 0, end_strength: 3, clamps: 0, reduction: 0, lower: 0 },
             ],
             pairs: &[],
             layered_sets: &[],

@@ -1,7 +1,7 @@
 // The rule set `sets`, written by `flagred export --rust` 0.1.0. Do not edit.
 // Inputs, in this order: a (0 to 1), b (-2 to 2).
 // Outputs, in this order: risk (0 to 100), place (0 to 1), load (0 to 10).
-// 8380 bytes of constants. An evaluation takes 728 bytes of memory.
+// 8404 bytes of constants. An evaluation takes 728 bytes of memory.
 
 /// Returns the outcome of each output at the given values of the inputs.
 #[allow(dead_code)]
@@ -91,9 +91,9 @@ pub static RULES: ::fuzzy::table::Table<'static> = {
         ],
         blocks: &[],
         outputs: &[
-            Output { low: 0.0, high: 100.0, default_value: NaN, form: 6, first: 0, end: 1, first_strength: 0, end_strength: 4, clamps: 0 },
-            Output { low: 0.0, high: 1.0, default_value: NaN, form: 6, first: 1, end: 2, first_strength: 4, end_strength: 6, clamps: 0 },
-            Output { low: 0.0, high: 10.0, default_value: NaN, form: 9, first: 0, end: 1, first_strength: 6, end_strength: 10, clamps: 0 },
+            Output { low: 0.0, high: 100.0, default_value: NaN, form: 6, first: 0, end: 1, first_strength: 0, end_strength: 4, clamps: 0, reduction: 0, lower: 0 },
+            Output { low: 0.0, high: 1.0, default_value: NaN, form: 6, first: 1, end: 2, first_strength: 4, end_strength: 6, clamps: 0, reduction: 0, lower: 0 },
+            Output { low: 0.0, high: 10.0, default_value: NaN, form: 9, first: 0, end: 1, first_strength: 6, end_strength: 10, clamps: 0, reduction: 0, lower: 0 },
         ],
         pairs: &[],
         layered_sets: &[LayeredSet { first_base: 0, end_base: 9, first_layer: 0, end_layer: 5 }],

@@ -1,7 +1,7 @@
 // The rule set `tipper`, written by `flagred export --rust` 0.1.0. Do not edit.
 // Inputs, in this order: service (0 to 10), food (0 to 10).
 // Outputs, in this order: tip (0 to 30 %).
-// 1604 bytes of constants. An evaluation takes 352 bytes of memory.
+// 1612 bytes of constants. An evaluation takes 352 bytes of memory.
 
 /// Returns the outcome of each output at the given values of the inputs.
 #[allow(dead_code)]
@@ -81,7 +81,7 @@ pub static RULES: ::fuzzy::table::Table<'static> = {
         ],
         blocks: &[],
         outputs: &[
-            Output { low: 0.0, high: 30.0, default_value: NaN, form: 1, first: 0, end: 2, first_strength: 0, end_strength: 5, clamps: 0 },
+            Output { low: 0.0, high: 30.0, default_value: NaN, form: 1, first: 0, end: 2, first_strength: 0, end_strength: 5, clamps: 0, reduction: 0, lower: 0 },
         ],
         pairs: &[
             Pair { area: [[10.0, 10.0], [-5.0, -5.0]], moment: [[-100.0, 0.0], [50.0, 0.0], [0.0, 0.0]], width: [0.0, 0.0], middle: [0.0, 0.0] },

@@ -2,6 +2,8 @@
 
 use flagred_tests::random_type2::{OutputTermKind, model};
 use flagred_tests::reference::type2;
+use fuzzy::model::{Defuzzifier, TypeReduction};
+use fuzzy::table::ClosedForm;
 use fuzzy::{Engine, Model};
 
 /// Compares `count` random models, each at three points. Returns the number of intervals.
@@ -70,6 +72,62 @@ fn curved_terms_and_all_operators_have_the_interval_of_all_switch_points() {
 #[test]
 fn weighted_numbers_have_the_interval_of_all_corners() {
     assert!(compare(OutputTermKind::Numbers, 400, 0, 1e-12) > 800);
+}
+
+/// Compares the values of methods of type reduction that give a number.
+#[test]
+fn reductions_to_a_number_have_their_formulas() {
+    let (mut closed, mut integrated) = (0, 0);
+    for (kind, count) in [
+        (OutputTermKind::Straight, 25),
+        (OutputTermKind::Curved, 25),
+        (OutputTermKind::Numbers, 100),
+    ] {
+        let models = (0..).filter_map(|seed| Some((seed, model(seed, kind)?)));
+        let is_sum = |model: &Model| model.outputs[0].defuzzifier == Defuzzifier::WeightedSum;
+        let models = models.filter(|(_, (model, _))| !is_sum(model));
+        for (seed, (mut model, points)) in models.take(count) {
+            let expected = points
+                .iter()
+                .map(|point| type2::interval(&model, &model.outputs[0], point, 10_000));
+            let expected: Vec<_> = expected.collect();
+            for method in [TypeReduction::NieTan, TypeReduction::BegianMelekMendel] {
+                model.outputs[0].type_reduction = method;
+                let engine = Engine::new(&model).unwrap();
+                match engine.table().unwrap().outputs[0].form() {
+                    ClosedForm::Integrated => integrated += 1,
+                    _ => closed += 1,
+                }
+                let variable = &model.outputs[0].variable;
+                let range = match kind {
+                    OutputTermKind::Numbers => 1.0,
+                    _ => variable.high - variable.low,
+                };
+                for (point, expected) in points.iter().zip(&expected) {
+                    let outcome = engine.evaluate(point).unwrap()[0];
+                    let (Some(value), Some(expected)) = (outcome.value(), expected) else {
+                        assert_eq!(outcome.value().is_none(), expected.is_none(), "seed {seed}");
+                        continue;
+                    };
+                    let expected_value = match method {
+                        TypeReduction::NieTan => expected.nie_tan,
+                        _ => expected.begian_melek_mendel,
+                    };
+                    // The centroid of an almost empty lower set depends on a few samples.
+                    let tolerance = match expected.lower_share {
+                        share if share < 1e-2 => 1e-2,
+                        _ => 1e-7,
+                    };
+                    assert!(
+                        (value - expected_value).abs() <= tolerance * range,
+                        "seed {seed} at {point:?}: {method:?} {value}, not {expected_value}\n{model:?}"
+                    );
+                    assert_eq!(outcome.low(), outcome.high());
+                }
+            }
+        }
+    }
+    assert!(closed > 200 && integrated > 20, "{closed} {integrated}");
 }
 
 #[test]

@@ -24,7 +24,7 @@ extern "C" {
 #endif
 
 /* The version of the format of the data that `flagred export --c` writes. */
-#define FLAGRED_FORMAT 10
+#define FLAGRED_FORMAT 11
 
 /* ---- Assessing a flight ------------------------------------------------------------------------------------------- */
 
@@ -215,6 +215,7 @@ typedef enum flagred_state {
 /* The outcome of an output. */
 typedef struct flagred_outcome {
     double value;               /* NAN if there is none */
+    double low, high;           /* the ends of the interval that type-2 terms give; without such terms the value */
     double coverage;            /* the largest firing strength of a rule, 0 to 1 */
     int32_t state;              /* flagred_state */
     int32_t dominant_rule;      /* the index of the rule with the largest firing strength; -1 where none fired */
@@ -297,7 +298,7 @@ typedef struct flagred_block {
 
 typedef struct flagred_output {
     double low, high, default_value;
-    uint32_t form, first, end, first_strength, end_strength, clamps;
+    uint32_t form, first, end, first_strength, end_strength, clamps, reduction, lower;
 } flagred_output;
 
 typedef struct flagred_pair {

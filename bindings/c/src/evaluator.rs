@@ -16,6 +16,8 @@ pub(crate) struct CEvaluator(Evaluator<'static>);
 #[repr(C)]
 pub(crate) struct COutcome {
     value: f64,
+    low: f64,
+    high: f64,
     coverage: f64,
     state: i32,
     dominant_rule: i32,
@@ -27,9 +29,10 @@ impl COutcome {
         let dominant = outcome.dominant_rule.map(|rule| i32::try_from(rule).ok());
         COutcome {
             value: outcome.value().unwrap_or(f64::NAN),
+            low: outcome.low().unwrap_or(f64::NAN),
+            high: outcome.high().unwrap_or(f64::NAN),
             coverage: outcome.coverage,
             state: match outcome.state {
-                // A table never computes intervals.
                 State::Defined(_) | State::Interval { .. } => 0,
                 // `Previous` occurs only in sequences of evaluations.
                 State::Default(_) | State::Previous(_) => 1,
@@ -101,11 +104,11 @@ unsafe fn start(
     }
     rules.check().map_err(|_| Status::DamagedPlan)?;
     let rules: &'static board::Rules<'static> = block.place(rules)?;
-    let outputs = rules.table.outputs.len();
+    let outputs = rules.outputs();
     let memory = RuleMemory {
         numbers: block.fill(rules.numbers(), 0.0)?,
         partials: block.fill(rules.partials(), PartialConjunction::NONE)?,
-        strongest: block.fill(outputs, StrongestRule::NONE)?,
+        strongest: block.fill(rules.table.outputs.len(), StrongestRule::NONE)?,
         outcomes: block.fill(outputs, table::Outcome::UNDEFINED)?,
         own: block.fill(outputs, table::Outcome::UNDEFINED)?,
     };

@@ -13,7 +13,7 @@ use flagred::board::{
 use crate::{array::Array, status::Status};
 
 /// The version of the exported data that this library supports.
-pub(crate) const FORMAT: u32 = 10;
+pub(crate) const FORMAT: u32 = 11;
 
 macro_rules! define {
     ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {

@@ -7,7 +7,7 @@ use flagred::shipped::PROFILES;
 use fuzzy::diagnostic::nearest;
 
 /// Extensions of rule sets and profiles, here and in other programs.
-pub(crate) const RULES: &[&str] = &["yaml", "yml", "fis", "fll", "fcl", "fml"];
+pub(crate) const RULES: &[&str] = &["yaml", "yml", "fis", "t2fis", "fll", "fcl", "fml"];
 
 /// Returns whether the extension of a path is one of these, in lower or upper case.
 pub(crate) fn has_ending(path: &Path, extensions: &[&str]) -> bool {

@@ -37,6 +37,11 @@ impl<'a> Rules<'a> {
         }
     }
 
+    /// The number of outputs that have outcomes.
+    pub const fn outputs(&self) -> usize {
+        self.table.outcomes()
+    }
+
     /// Verifies every index and size. Exported rule sets pass.
     ///
     /// # Errors
@@ -89,9 +94,14 @@ impl<'a> Rules<'a> {
     /// An upper bound, in bytes, for an evaluator, its memory and the rules, if pieces are aligned to at most 16 bytes.
     pub const fn bytes(&self) -> usize {
         const ALIGNED: usize = 15;
-        let output = size_of::<StrongestRule>() + 2 * size_of::<Outcome>();
         (size_of::<Rules<'_>>() + size_of::<Evaluator<'_>>() + 8 * ALIGNED)
-            .saturating_add(self.table.outputs.len().saturating_mul(output))
+            .saturating_add(
+                self.table
+                    .outputs
+                    .len()
+                    .saturating_mul(size_of::<StrongestRule>()),
+            )
+            .saturating_add(self.outputs().saturating_mul(2 * size_of::<Outcome>()))
             .saturating_add(self.numbers().saturating_mul(size_of::<f64>()))
             .saturating_add(
                 self.partials()
@@ -108,11 +118,11 @@ pub struct RuleMemory<'m> {
     pub numbers: &'m mut [f64],
     /// [`Rules::partials`].
     pub partials: &'m mut [PartialConjunction],
-    /// One for each output.
+    /// One for each output of the table.
     pub strongest: &'m mut [StrongestRule],
-    /// One for each output.
+    /// [`Rules::outputs`].
     pub outcomes: &'m mut [Outcome],
-    /// The outcomes of a stage; as many as outputs.
+    /// The outcomes of a stage: [`Rules::outputs`].
     pub own: &'m mut [Outcome],
 }
 
@@ -138,8 +148,8 @@ impl<'a> Evaluator<'a> {
             own,
         } = memory;
         let sizes = rules.table.sizes;
-        let outputs = rules.table.outputs.len();
-        let fits = [strongest.len(), outcomes.len(), own.len()] == [outputs; 3];
+        let fits = strongest.len() == rules.table.outputs.len()
+            && [outcomes.len(), own.len()] == [rules.outputs(); 2];
         let evaluator = Evaluator {
             rules,
             scratch: Scratch {

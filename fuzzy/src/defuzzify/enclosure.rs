@@ -6,13 +6,14 @@
 use alloc::vec::Vec;
 
 use super::piece::{Integrals, Piece, unit};
-use super::reduction::{Reduction, Set, WeightedNumber, average, has_area, sum};
+use super::reduction::{Reduction, Set, has_area};
 use super::workspace::Workspace;
 use super::{ConsequentOperators, Strengths};
 use crate::model::{Defuzzifier, Output, Term, TypeReduction};
 use crate::table::{
     finite,
     operators::{larger, smaller},
+    reduction::{WeightedNumber, average, sum},
 };
 
 /// The number of halvings of the search for a bisector.
@@ -35,6 +36,10 @@ pub(crate) struct EnclosureMethod {
 enum Method {
     /// The interval of the type reduction.
     Reduced(Reduction),
+    /// The interval of a weighted average, or of a sum.
+    Weighted {
+        is_sum: bool,
+    },
     Bisector(Set),
     Maxima(Set),
     /// Anything between the first and the last value with a degree above 0.
@@ -56,19 +61,19 @@ impl EnclosureMethod {
         let reduction = Reduction::new(output, operators);
         let method = match (output.defuzzifier, reduction) {
             (Defuzzifier::Tsukamoto, _) => Method::Tsukamoto(output.variable.terms.clone()),
-            (_, reduction) if output.samples.is_some() => Method::Support(reduction),
-            (Defuzzifier::Bisector, Reduction::Set(set)) => Method::Bisector(*set),
+            (defuzzifier, None) => Method::Weighted {
+                is_sum: defuzzifier == Defuzzifier::WeightedSum,
+            },
+            (_, Some(reduction)) if output.samples.is_some() => Method::Support(reduction),
+            (Defuzzifier::Bisector, Some(Reduction::Set(set))) => Method::Bisector(*set),
             (
                 Defuzzifier::SmallestOfMaxima
                 | Defuzzifier::MeanOfMaxima
                 | Defuzzifier::LargestOfMaxima,
-                Reduction::Set(set),
+                Some(Reduction::Set(set)),
             ) => Method::Maxima(*set),
-            (
-                Defuzzifier::Centroid | Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum,
-                reduction,
-            ) => Method::Reduced(reduction),
-            (_, reduction) => Method::Support(reduction),
+            (Defuzzifier::Centroid, Some(reduction)) => Method::Reduced(reduction),
+            (_, Some(reduction)) => Method::Support(reduction),
         };
         EnclosureMethod {
             method,
@@ -83,7 +88,7 @@ impl EnclosureMethod {
         match &self.method {
             Method::Reduced(reduction) | Method::Support(reduction) => reduction.cuts(),
             Method::Bisector(set) | Method::Maxima(set) => set.cuts(),
-            Method::Tsukamoto(_) => 0,
+            Method::Weighted { .. } | Method::Tsukamoto(_) => 0,
         }
     }
 
@@ -95,7 +100,6 @@ impl EnclosureMethod {
         upper: Strengths<'_>,
         number: impl Fn(usize) -> (f64, f64),
         workspace: &mut Workspace,
-        points: &mut Vec<WeightedNumber>,
     ) -> Option<ValueEnclosure> {
         let found = |(low, high): (f64, f64), is_certain: bool| ValueEnclosure {
             low,
@@ -109,7 +113,7 @@ impl EnclosureMethod {
             _ => lower,
         };
         match &self.method {
-            Method::Reduced(reduction @ (Reduction::Average | Reduction::Sum)) => {
+            Method::Weighted { is_sum } => {
                 let terms = 0..upper.offsets.len().saturating_sub(1);
                 let mut numbers = Vec::new();
                 for term in terms {
@@ -119,19 +123,14 @@ impl EnclosureMethod {
                         numbers.push((number(term), weights));
                     }
                 }
-                let is_sum = matches!(reduction, Reduction::Sum);
-                let ends = weighted(&numbers, if is_sum { sum } else { average }, points)?;
+                let ends = weighted(&numbers, *is_sum)?;
                 Some(found(ends, fires(lower)))
             }
             Method::Reduced(reduction) | Method::Support(reduction) => {
-                let ends = reduction.interval(
-                    TypeReduction::Exact,
-                    least,
-                    upper,
-                    |_| f64::NAN,
-                    workspace,
-                    points,
-                )?;
+                let ends = reduction.interval(TypeReduction::Exact, least, upper, workspace)?;
+                if !(ends.0.is_finite() && ends.1.is_finite()) {
+                    return None;
+                }
                 let is_certain = match (&self.method, reduction) {
                     // All samples may miss the set, which then has no value.
                     (Method::Support(_), Reduction::Set(_)) => false,
@@ -170,7 +169,7 @@ impl EnclosureMethod {
                     }
                 }
                 let is_certain = numbers.iter().any(|(_, (lower, _))| *lower > 0.0);
-                Some(found(weighted(&numbers, average, points)?, is_certain))
+                Some(found(weighted(&numbers, false)?, is_certain))
             }
         }
     }
@@ -185,19 +184,17 @@ const EMPTY: Strengths<'static> = Strengths {
 type Number = ((f64, f64), (f64, f64));
 
 /// Returns the bounds of the weighted averages or sums of numbers. Neither bound decreases when a number increases.
-fn weighted(
-    numbers: &[Number],
-    reduce: fn(&[WeightedNumber]) -> Option<(f64, f64)>,
-    points: &mut Vec<WeightedNumber>,
-) -> Option<(f64, f64)> {
-    let mut ends = |at: fn(&(f64, f64)) -> f64| {
-        points.clear();
-        points.extend(numbers.iter().map(|(ends, (lower, upper))| WeightedNumber {
+fn weighted(numbers: &[Number], is_sum: bool) -> Option<(f64, f64)> {
+    let ends = |at: fn(&(f64, f64)) -> f64| {
+        let points = numbers.iter().map(|(ends, (lower, upper))| WeightedNumber {
             at: at(ends),
             lower: *lower,
             upper: *upper,
-        }));
-        reduce(points)
+        });
+        match is_sum {
+            true => sum(points),
+            false => average(points),
+        }
     };
     let are_finite = |at: fn(&(f64, f64)) -> f64| numbers.iter().all(|(z, _)| at(z).is_finite());
     // The search for an end needs finite numbers.

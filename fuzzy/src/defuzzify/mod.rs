@@ -28,11 +28,10 @@ pub(crate) use layers::PreparedLayers;
 pub(crate) use partition::Partition;
 pub(crate) use piece::unit;
 pub(crate) use prepared::{PreparedSet, corners, straight};
-pub(crate) use reduction::{Reduction, WeightedNumber};
+pub(crate) use reduction::Reduction;
 pub(crate) use weighted::Consequents;
 
 mod calculus;
-mod closed_reduction;
 mod curves;
 mod enclosure;
 mod integrated;

@@ -268,6 +268,8 @@ impl OwnedTable {
             first_strength: output.strengths.start as u32,
             end_strength: output.strengths.end as u32,
             clamps: u32::from(output.clamps),
+            reduction: 0,
+            lower: 0,
         });
     }
 }

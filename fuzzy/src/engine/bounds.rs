@@ -1,47 +1,40 @@
-//! Stages with interval type-2 terms: two compiled stages give the bounds of the firing strengths, and a type reduction
+//! Stages with interval type-2 terms: one compiled stage has both bounds of the firing strengths, and a type reduction
 //! computes the interval of each output.
 //!
 //! AND, OR, the hedges and weights never decrease when a degree increases, and NOT reverses the order. So the upper bound
 //! of a firing strength is an ordinary firing strength of upper degrees, in which terms below an odd number of NOTs have
-//! their lower degrees; the lower bound is the opposite. A model with type-2 terms is therefore split into two models
-//! without such terms, and both are compiled like any other model.
+//! their lower degrees; the lower bound is the opposite. A model with type-2 terms is therefore converted to an ordinary
+//! model, in which each output that is an interval has a second output, with the lower bounds. The second outputs are
+//! behind all others and have no outcomes.
+//!
+//! The table computes the intervals of weighted outputs and the values of fuzzy sets with a closed form, so that they can be
+//! exported. All other intervals of fuzzy sets are computed here.
 
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 
-use super::arrays::OwnedTable;
+use super::strategy::method;
 use super::{CompiledOutput, Outcome, RowBuffers, Stage, StageScratch, State};
-use crate::defuzzify::{ConsequentOperators, Reduction, Strengths, WeightedNumber};
+use crate::defuzzify::{ConsequentOperators, Method, Reduction, Strengths};
 use crate::model::{
-    Defuzzifier, MembershipFunction, Model, Output, TypeReduction, Variable, type2::Bound,
+    Defuzzifier, MembershipFunction, Model, Output, Term, TypeReduction, type2::Bound,
 };
 use crate::rule::{Condition, Proposition};
-use crate::table::operators::{larger, smaller};
-use crate::table::{self, Arrays};
+use crate::table::LOWER_BOUNDS;
 
-/// The parts of a stage that compute intervals. The stage itself has the upper bounds of the firing strengths.
+/// The type reductions of a stage that the table does not compute.
 #[derive(Debug, Clone)]
 pub(super) struct Bounds {
-    /// The stage that has the lower bounds of the firing strengths.
-    lower: Stage,
-    /// The type reduction of each output; `None` for outputs that no type-2 term affects.
-    reductions: Vec<Option<(TypeReduction, Reduction)>>,
+    reductions: Vec<SetReduction>,
 }
 
-/// The working memory of [`Bounds`].
-#[derive(Debug)]
-pub(super) struct BoundsScratch {
-    lower: StageScratch,
-    points: Vec<WeightedNumber>,
-}
-
-/// Keeps the capacity, so that evaluations with the clone do not allocate either.
-impl Clone for BoundsScratch {
-    fn clone(&self) -> Self {
-        BoundsScratch {
-            lower: self.lower.clone(),
-            points: Vec::with_capacity(self.points.capacity()),
-        }
-    }
+/// The type reduction of a fuzzy set.
+#[derive(Debug, Clone)]
+struct SetReduction {
+    output: usize,
+    /// The index of the output with the lower bounds of the firing strengths.
+    lower: usize,
+    method: TypeReduction,
+    reduction: Reduction,
 }
 
 impl Stage {
@@ -54,22 +47,38 @@ impl Stage {
         {
             return Stage::plain(model);
         }
-        let reduction = |output: &Output| {
-            let operators = model.operators_of_output(output);
+        let mut stage = Stage::plain(&with_both_bounds(model));
+        let intervals = model.outputs.iter().enumerate();
+        let intervals = intervals.filter(|(_, output)| model.has_interval(output));
+        let mut reductions = Vec::new();
+        for ((output, of_model), lower) in intervals.zip(model.outputs.len()..) {
+            let operators = model.operators_of_output(of_model);
             let operators = ConsequentOperators {
                 implication: operators.implication,
                 aggregation: operators.aggregation,
             };
-            let has_interval = model.has_interval(output);
-            has_interval.then(|| (output.type_reduction, Reduction::new(output, operators)))
-        };
-        let bounds = Bounds {
-            lower: Stage::plain(&bound(model, Bound::Lower)),
-            reductions: model.outputs.iter().map(reduction).collect(),
-        };
+            let method = of_model.type_reduction;
+            if !has_closed_form(model, of_model)
+                && let Some(reduction) = Reduction::new(of_model, operators)
+            {
+                reductions.push(SetReduction {
+                    output,
+                    lower,
+                    method,
+                    reduction,
+                });
+            }
+            let outputs = &mut stage.arrays.outputs;
+            if let Some(upper) = outputs.get_mut(output) {
+                (upper.reduction, upper.lower) = (method.code(), lower as u32);
+            }
+            if let Some(lower) = outputs.get_mut(lower) {
+                lower.reduction = LOWER_BOUNDS;
+            }
+        }
         Stage {
-            single: super::SingleRowMethod::Bounds(Box::new(bounds)),
-            ..Stage::plain(&bound(model, Bound::Upper))
+            single: super::SingleRowMethod::Bounds(Box::new(Bounds { reductions })),
+            ..stage
         }
     }
 
@@ -82,55 +91,123 @@ impl Stage {
     }
 }
 
-/// Returns a model without type-2 terms whose firing strengths are a bound of those of `model`. Its fuzzy outputs that are
-/// intervals have singletons in place of their terms, because only their firing strengths are used.
-fn bound(model: &Model, bound: Bound) -> Model {
-    let mut only = model.clone();
-    let mut lower_names: Vec<(&str, &str, String)> = Vec::new();
-    for (variable, changed) in model.inputs.iter().zip(&mut only.inputs) {
-        changed.terms = variable
-            .terms
-            .iter()
-            .map(|term| term.only(Bound::Upper))
-            .collect();
-        for term in variable.terms.iter().filter(|term| term.lower.is_some()) {
-            let mut lower = term.only(Bound::Lower);
-            lower.name = unused_name(changed, &term.name);
-            lower_names.push((&variable.name, &term.name, lower.name.clone()));
-            changed.terms.push(lower);
-        }
-    }
-    for rule in &mut only.rules {
-        rename(&mut rule.rule.condition, bound, &|proposition| {
-            let term = proposition.term.as_mut()?;
-            let mut names = lower_names.iter();
-            let (.., name) = names.find(|(variable, upper, _)| {
-                *variable == proposition.variable.text && *upper == term.text
-            })?;
-            term.text.clone_from(name);
-            Some(())
-        });
-    }
-    for (output, changed) in model.outputs.iter().zip(&mut only.outputs) {
-        if !model.has_interval(output) || output.defuzzifier.is_weighted() {
-            continue;
-        }
-        changed.defuzzifier = Defuzzifier::Centroid;
-        for term in &mut changed.variable.terms {
-            term.membership_function = MembershipFunction::Singleton {
-                at: output.variable.low,
-            };
-            (term.height, term.lower) = (1.0, None);
-        }
+/// Returns whether the table computes the type reduction of a fuzzy set: from the areas and centroids of both sets.
+fn has_closed_form(model: &Model, output: &Output) -> bool {
+    let operators = model.operators_of_output(output);
+    let is_closed = |bound: Bound| {
+        let method = method(&only(output, bound), operators, |_| None);
+        !matches!(method, Method::Integrated(_))
+    };
+    output.defuzzifier == Defuzzifier::Centroid
+        && output.type_reduction.is_number()
+        && is_closed(Bound::Upper)
+        && is_closed(Bound::Lower)
+}
+
+/// Returns an output with only the lower, or only the upper membership functions of its terms.
+fn only(output: &Output, bound: Bound) -> Output {
+    let mut only = output.clone();
+    for term in &mut only.variable.terms {
+        *term = term.only(bound);
     }
     only
 }
 
-/// Returns a name that no term of a variable has.
-fn unused_name(variable: &Variable, name: &str) -> String {
-    let is_used = |name: &str| variable.terms.iter().any(|term| term.name == name);
+/// Returns a model without type-2 terms. Each output that is an interval has the upper bounds of its firing strengths, and
+/// a second output, at the end, has the lower bounds. Fuzzy sets without a closed form have singletons in place of their
+/// terms, because only their firing strengths are used.
+fn with_both_bounds(model: &Model) -> Model {
+    let mut both = model.clone();
+    let mut lower_names: Vec<(&str, &str, String)> = Vec::new();
+    for (variable, changed) in model.inputs.iter().zip(&mut both.inputs) {
+        for term in &mut changed.terms {
+            term.lower = None;
+        }
+        for term in variable.terms.iter().filter(|term| term.lower.is_some()) {
+            let mut lower = term.only(Bound::Lower);
+            lower.name = unused_name(&term.name, changed.terms.iter().map(|term| &term.name));
+            lower_names.push((&variable.name, &term.name, lower.name.clone()));
+            changed.terms.push(lower);
+        }
+    }
+    // The name of each output that is an interval, and that of its second output.
+    let mut lower_outputs: Vec<(&str, String)> = Vec::new();
+    for (index, output) in model.outputs.iter().enumerate() {
+        if !model.has_interval(output) {
+            continue;
+        }
+        let names = both.outputs.iter().map(|output| &output.variable.name);
+        let name = unused_name(&output.variable.name, names);
+        let Some(upper) = both.outputs.get_mut(index) else {
+            continue;
+        };
+        let mut lower;
+        if has_closed_form(model, output) {
+            *upper = only(output, Bound::Upper);
+            lower = only(output, Bound::Lower);
+        } else if output.defuzzifier.is_weighted() {
+            lower = output.clone();
+            // The numbers are those of the first output.
+            replace_terms(&mut lower, &MembershipFunction::Constant { value: 0.0 });
+        } else {
+            let at = upper.variable.low;
+            replace_terms(upper, &MembershipFunction::Singleton { at });
+            lower = upper.clone();
+        }
+        lower.variable.name.clone_from(&name);
+        both.outputs.push(lower);
+        lower_outputs.push((&output.variable.name, name));
+    }
+    let mut lower_rules = Vec::new();
+    for (rule, changed) in model.rules.iter().zip(&mut both.rules) {
+        let mut lower = rule.clone();
+        lower.rule.consequents.retain_mut(|consequent| {
+            let mut outputs = lower_outputs.iter();
+            let found = outputs.find(|(name, _)| *name == consequent.output.text);
+            found.is_some_and(|(_, name)| {
+                consequent.output.text.clone_from(name);
+                true
+            })
+        });
+        if !model.reads_type2(rule) {
+            // Both bounds of the firing strength are equal.
+            changed.rule.consequents.append(&mut lower.rule.consequents);
+            continue;
+        }
+        for (rule, bound) in [(&mut *changed, Bound::Upper), (&mut lower, Bound::Lower)] {
+            rename(&mut rule.rule.condition, bound, &|proposition| {
+                let term = proposition.term.as_mut()?;
+                let mut names = lower_names.iter();
+                let (.., name) = names.find(|(variable, upper, _)| {
+                    *variable == proposition.variable.text && *upper == term.text
+                })?;
+                term.text.clone_from(name);
+                Some(())
+            });
+        }
+        if !lower.rule.consequents.is_empty() {
+            lower_rules.push(lower);
+        }
+    }
+    both.rules.append(&mut lower_rules);
+    both
+}
+
+fn replace_terms(output: &mut Output, membership_function: &MembershipFunction) {
+    for term in &mut output.variable.terms {
+        *term = Term {
+            name: core::mem::take(&mut term.name),
+            membership_function: membership_function.clone(),
+            height: 1.0,
+            lower: None,
+        };
+    }
+}
+
+/// Returns a name that is not among the given names.
+fn unused_name<'n>(name: &str, used: impl Iterator<Item = &'n String> + Clone) -> String {
     let mut unused = format!("lower {name}");
-    while is_used(&unused) {
+    while used.clone().any(|used| *used == unused) {
         unused.insert_str(0, "lower ");
     }
     unused
@@ -158,22 +235,13 @@ fn rename(
 }
 
 impl Bounds {
-    pub(super) fn scratch(&self) -> BoundsScratch {
-        let terms = self.lower.outputs.iter().map(|output| output.offsets.len());
-        BoundsScratch {
-            lower: self.lower.scratch(&self.lower.arrays),
-            points: Vec::with_capacity(terms.max().unwrap_or(0)),
-        }
-    }
-
     /// Returns the maximum number of cuts of an evaluation, in addition to a fixed number per firing strength.
     pub(super) fn cuts(&self) -> usize {
-        let reductions = self.reductions.iter().flatten();
-        let cuts = reductions.map(|(_, reduction)| reduction.cuts());
+        let cuts = self.reductions.iter().map(|one| one.reduction.cuts());
         cuts.max().unwrap_or(0)
     }
 
-    /// Evaluates a stage with its upper and its lower firing strengths.
+    /// Evaluates a stage with both bounds of its firing strengths.
     #[inline(never)]
     pub(super) fn outcomes(
         &self,
@@ -183,53 +251,23 @@ impl Bounds {
         outcomes: &mut [Outcome],
     ) {
         stage.outcomes_by(scratch, inputs, outcomes, super::fire_rules);
-        let StageScratch {
-            table: upper,
-            workspace,
-            bounds,
-        } = scratch;
-        let Some(BoundsScratch { lower, points }) = bounds.as_deref_mut() else {
-            return;
-        };
-        let lower = &mut lower.table;
-        let values = inputs.as_chunks().0.iter().copied();
-        table::clamp(&self.lower.arrays, values, &mut lower.values);
-        super::fire_rules(&self.lower.arrays, lower);
-        let of_outputs = stage.outputs.iter().zip(&self.lower.outputs);
-        let reductions = self.reductions.iter().zip(of_outputs).zip(outcomes);
-        for (index, ((reduction, (of_upper, of_lower)), outcome)) in reductions.enumerate() {
-            let (Some((method, reduction)), State::Defined(_)) = (reduction, outcome.state) else {
+        let StageScratch { table, workspace } = scratch;
+        for one in &self.reductions {
+            let (Some(outcome), Some(output)) = (
+                outcomes.get_mut(one.output),
+                stage.arrays.outputs.get(one.output),
+            ) else {
                 continue;
             };
-            let number = |term: usize| number(&stage.arrays, index, term, upper);
-            let strengths = (strengths(of_lower, lower), strengths(of_upper, upper));
-            let (of_lower_rules, of_upper_rules) = strengths;
-            let interval = reduction.interval(
-                *method,
-                of_lower_rules,
-                of_upper_rules,
-                number,
-                workspace,
-                points,
-            );
-            outcome.state = match interval {
-                None => State::NoRuleFired,
-                Some((low, high)) => {
-                    let end = |end: f64| match of_upper.clamps {
-                        true => larger(of_upper.low, smaller(of_upper.high, end)),
-                        false => end,
-                    };
-                    match method {
-                        TypeReduction::NieTan | TypeReduction::BegianMelekMendel => {
-                            State::Defined(end(low))
-                        }
-                        TypeReduction::Exact | TypeReduction::WuMendel => State::Interval {
-                            low: end(low),
-                            high: end(high),
-                        },
-                    }
-                }
+            let of = |index: usize| Some(strengths(stage.outputs.get(index)?, table));
+            let (Some(lower), Some(upper), State::Defined(_)) =
+                (of(one.lower), of(one.output), outcome.state)
+            else {
+                continue;
             };
+            let ends = one.reduction.interval(one.method, lower, upper, workspace);
+            let state = ends.map(|ends| one.method.state(output, ends));
+            outcome.state = state.unwrap_or(State::NoRuleFired);
         }
     }
 }
@@ -240,17 +278,6 @@ fn strengths<'a>(output: &'a CompiledOutput, buffers: &'a RowBuffers<1>) -> Stre
         strengths: strengths.unwrap_or_default().as_flattened(),
         offsets: &output.offsets,
     }
-}
-
-/// Returns the number of a term of a Takagi-Sugeno output; NaN for any other output.
-fn number(arrays: &OwnedTable, output: usize, term: usize, buffers: &RowBuffers<1>) -> f64 {
-    let consequent = arrays.outputs.get(output).and_then(|output| {
-        let range = output.first as usize..output.end as usize;
-        arrays.consequents().get(range)?.get(term)
-    });
-    consequent.map_or(f64::NAN, |consequent| {
-        table::number(arrays, consequent, &buffers.values)
-    })
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 use super::*;
 use crate::engine::Engine;
-use crate::model::{Implication, Operators};
+use crate::model::{Implication, Operators, Variable};
 use crate::rule;
 
 const TIPPER: &str = "
@@ -266,7 +266,7 @@ outputs:
     );
     let [chain, first, second] =
         [chain, first, second].map(|text| Engine::new(&text.parse().unwrap()).unwrap());
-    assert!(chain.table().is_none() && chain.chain().is_none());
+    assert!(chain.table().is_none() && chain.chain().is_some());
     for food in [0.0, 2.5, 4.5, 5.5, 7.0, 10.0] {
         let outcomes = chain.evaluate(&[food]).unwrap();
         let mood = first.evaluate(&[food]).unwrap()[0];

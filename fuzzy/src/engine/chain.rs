@@ -153,13 +153,10 @@ impl Engine {
     }
 
     /// Returns the compiled arrays of a model in which an output [reads](crate::Model::reads) another one, to evaluate
-    /// them without this engine or to write them to a file. `None` for any other model (use [`table`](Engine::table)),
-    /// and for a model with [type-2 terms](crate::Model::has_type2_terms).
+    /// them without this engine or to write them to a file. `None` for any other model, which is a
+    /// [`table`](Engine::table).
     pub fn chain(&self) -> Option<table::Chain<'_>> {
         let chain = self.chain.as_deref()?;
-        if self.model.has_type2_terms() {
-            return None;
-        }
         Some(table::Chain {
             table: chain.flat.table(),
             stages: &chain.stages,

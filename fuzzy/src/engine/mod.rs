@@ -22,7 +22,6 @@ use crate::model::{Model, NoRuleFires};
 use crate::table::{self, Buffers, PartialConjunction, StrongestRule, Table};
 use aligned::AlignedRows;
 use arrays::OwnedTable;
-use bounds::BoundsScratch;
 use chain::Chain;
 use strategy::SingleRowMethod;
 
@@ -154,8 +153,6 @@ struct StageScratch<const L: usize = 1> {
     table: RowBuffers<L>,
     /// Memory for outputs without a closed form.
     workspace: Workspace,
-    /// Memory for the lower bounds of firing strengths, if the stage has interval type-2 terms.
-    bounds: Option<Box<BoundsScratch>>,
 }
 
 #[cfg(feature = "check")]
@@ -245,11 +242,11 @@ impl Engine {
     }
 
     /// Returns the compiled arrays, which can be evaluated without this engine or written to a file: see [`table`].
-    /// `None` if an output [reads](Model::reads) another one, because a table has only one stage, or if the model has
-    /// [type-2 terms](Model::has_type2_terms). A table cannot evaluate outputs whose set is
-    /// [`ClosedForm::Integrated`](table::ClosedForm::Integrated); only the engine can.
+    /// `None` if an output [reads](Model::reads) another one, because a table has only one stage. A table cannot evaluate
+    /// outputs whose set is [`ClosedForm::Integrated`](table::ClosedForm::Integrated); only the engine can. With
+    /// [type-2 terms](Model::has_type2_terms), these are all outputs whose terms are fuzzy sets.
     pub fn table(&self) -> Option<Table<'_>> {
-        let is_table = self.chain.is_none() && !self.model.has_type2_terms();
+        let is_table = self.chain.is_none();
         is_table.then(|| self.first.arrays.table())
     }
 
@@ -395,7 +392,6 @@ impl Stage {
                     Some(_) => workspace.with_lines(),
                 }
             },
-            bounds: bounds.map(|bounds| Box::new(bounds.scratch())),
         }
     }
 
@@ -434,7 +430,6 @@ impl Stage {
         let StageScratch {
             table: buffers,
             workspace,
-            ..
         } = scratch;
         let integrate =
             |index: usize, strengths: &[f64]| self.integrate(index, strengths, workspace);

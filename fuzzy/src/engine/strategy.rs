@@ -46,7 +46,7 @@
 //! | one row | `Vectors` | `engine/vectors/uniform.rs` | feature `simd`, a uniform table of 3 or 4 inputs and 1 output | 66 (`four_inputs`) |
 //! | one row | `Cells` | `table/firing.rs` | any other uniform table without programs | 73 (2 outputs) |
 //! | one row | `Rules` | `table/firing.rs` | any other rules | 82 (`tipper`) |
-//! | one row | `Bounds` | `engine/bounds.rs` | interval type-2 terms: the rules fire twice, and `defuzzify/reduction.rs` computes the interval | 1,720 |
+//! | one row | `Bounds` | `engine/bounds.rs` | interval type-2 terms: rules have both bounds, and `defuzzify/reduction.rs` computes the interval | 1,720 |
 //! | many rows | - | `engine/batch.rs` | programs alone, if there are few ([`OwnedTable::programs_alone`]); otherwise the layout above | 13 |
 
 use super::arrays::OwnedTable;
@@ -76,7 +76,7 @@ pub(super) enum SingleRowMethod {
     Cells,
     /// Any other layout.
     Rules,
-    /// Two evaluations, for the bounds of the firing strengths, and a type reduction.
+    /// Rules with both bounds of their firing strengths, and a type reduction.
     Bounds(alloc::boxed::Box<Bounds>),
 }
 

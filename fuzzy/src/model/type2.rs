@@ -6,6 +6,7 @@ use super::{Activation, MembershipFunction, Model, Output, Rule, Term, Variable,
 #[cfg(feature = "check")]
 use crate::rule::Condition;
 use crate::rule::{Hedge, Proposition};
+pub use crate::table::TypeReduction;
 
 /// The lower membership function of an interval type-2 term.
 ///
@@ -31,32 +32,6 @@ pub struct LowerFunction {
     pub membership_function: MembershipFunction,
     /// The height of the membership function, in (0, 1].
     pub height: f64,
-}
-
-/// A type reduction: the method that computes the interval, or the value, of an output that interval type-2 terms
-/// affect. docs/rule-sets.md has the formulas.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum TypeReduction {
-    /// The exact interval of all centroids, which the algorithms of Karnik and Mendel approximate with samples.
-    #[default]
-    Exact,
-    /// Nie and Tan: the centroid of the mean of the lower and the upper set. The interval is a single value.
-    NieTan,
-    /// Begian, Melek and Mendel: the mean of the centroids of the lower and the upper set. The interval is a single
-    /// value.
-    BegianMelekMendel,
-    /// Wu and Mendel: an interval whose ends are the middles of the uncertainty bounds of the exact ends.
-    WuMendel,
-}
-
-impl TypeReduction {
-    /// All type reductions.
-    pub const ALL: [TypeReduction; 4] = [
-        TypeReduction::Exact,
-        TypeReduction::NieTan,
-        TypeReduction::BegianMelekMendel,
-        TypeReduction::WuMendel,
-    ];
 }
 
 /// The lower or the upper bound of a degree or a firing strength.

@@ -120,7 +120,7 @@ pub struct Chain<'a> {
 pub struct Values<'m> {
     /// The values of the inputs, then of the outputs that a stage reads.
     pub inputs: &'m mut [f64],
-    /// The outcomes of a stage, one per output.
+    /// The outcomes of a stage; as many as the rule set has.
     pub own: &'m mut [Outcome],
 }
 
@@ -175,7 +175,7 @@ impl<'a> Chain<'a> {
     /// The first array with an index out of bounds.
     pub fn check(&self, inputs: usize) -> Result<(), DamagedArray> {
         let require = |holds: bool, array| holds.then_some(()).ok_or(DamagedArray(array));
-        let outputs = self.table.outputs.len();
+        let outputs = self.table.outcomes();
         let is_output = |output: &u32| (*output as usize) < outputs;
         require(self.parts().count() == self.stages.len(), "stages")?;
         for (table, indices) in self.parts() {
@@ -193,7 +193,7 @@ impl<'a> Chain<'a> {
             let fits = sizes[0].iter().zip(&sizes[1]).all(|(own, all)| own <= all);
             require(
                 fits && table.inputs.len() == inputs.saturating_add(indices.reads.len())
-                    && table.outputs.len() == indices.outputs.len(),
+                    && table.outcomes() == indices.outputs.len(),
                 "stages",
             )?;
             let mut of_model = indices.reads.iter().chain(indices.outputs);

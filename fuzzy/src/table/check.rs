@@ -1,6 +1,9 @@
 //! Verification of the indices of a table.
 
-use super::{ClosedForm, Conjunctions, Dimension, FuzzySet, Input, LayeredSet, Op, Table};
+use super::{
+    ClosedForm, Conjunctions, Dimension, FuzzySet, Input, LOWER_BOUNDS, LayeredSet, Op, Output,
+    Table, TypeReduction,
+};
 
 /// The error for a damaged table or plan: the name of the array with an index out of bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,6 +32,14 @@ fn within(first: u32, end: u32, length: usize) -> bool {
 }
 
 impl Table<'_> {
+    /// Returns whether an output is not an interval, or has a valid method and lower bounds in a later output.
+    fn has_lower_bounds(&self, output: &Output) -> bool {
+        let is_valid = (output.reduction as usize) <= TypeReduction::ALL.len();
+        let lower = self.outputs.get(output.lower as usize);
+        let is_lower = lower.is_some_and(|lower| lower.reduction == LOWER_BOUNDS);
+        matches!(output.reduction, 0 | LOWER_BOUNDS) || (is_valid && is_lower)
+    }
+
     /// Verifies every index and size, so that an evaluation cannot panic. Exported tables always pass; a table that was
     /// edited or corrupted may not.
     ///
@@ -98,6 +109,11 @@ impl Table<'_> {
             let has_literal = matches!(step.op, Op::PUSH | Op::AND_LITERAL | Op::OR_LITERAL);
             require(!has_literal || (step.literal as usize) < literals, "steps")?;
         }
+        let kinds = self
+            .outputs
+            .iter()
+            .map(|output| output.reduction == LOWER_BOUNDS);
+        require(kinds.is_sorted(), "outputs")?;
         for output in self.outputs {
             let strengths = output.end_strength.saturating_sub(output.first_strength) as usize;
             let numbers = output.end.saturating_sub(output.first) as usize;
@@ -115,7 +131,8 @@ impl Table<'_> {
             require(
                 within(output.first_strength, output.end_strength, of_all)
                     && within(output.first, output.end, length)
-                    && (form != ClosedForm::Partition || 2 * numbers < strengths),
+                    && (form != ClosedForm::Partition || 2 * numbers < strengths)
+                    && self.has_lower_bounds(output),
                 "outputs",
             )?;
             if form == ClosedForm::Layers {

@@ -196,22 +196,11 @@ pub(super) fn closed<A: Arrays, const L: usize>(
 ) -> bool {
     let range = output.first as usize..output.end as usize;
     match output.form() {
-        ClosedForm::Partition => partition(table, output, strengths, values, Pair::cut),
-        ClosedForm::ScaledPartition => partition(table, output, strengths, values, Pair::scaled),
-        ClosedForm::Layers => {
-            let layered = table.layered_sets()[output.first as usize];
-            let [areas, moments] = layered.integrals(table, strengths, bases);
-            set(values, |row| output.centroid((areas[row], moments[row])));
-        }
-        ClosedForm::Moments => {
-            let (mut areas, mut moments) = ([0.0; L], [0.0; L]);
-            for (Moment { area, moment }, strengths) in table.moments()[range].iter().zip(strengths)
-            {
-                for row in 0..L {
-                    areas[row] += strengths[row] * area;
-                    moments[row] += strengths[row] * moment;
-                }
-            }
+        ClosedForm::Partition
+        | ClosedForm::ScaledPartition
+        | ClosedForm::Layers
+        | ClosedForm::Moments => {
+            let [areas, moments] = integrals(table, output, strengths, bases);
             set(values, |row| output.centroid((areas[row], moments[row])));
         }
         ClosedForm::WeightedAverage | ClosedForm::WeightedSum => {
@@ -224,6 +213,63 @@ pub(super) fn closed<A: Arrays, const L: usize>(
         }
     }
     true
+}
+
+/// Returns the areas and moments of a set for which they are a few sums; 0 for any other output.
+#[inline(always)]
+fn integrals<A: Arrays, const L: usize>(
+    table: &A,
+    output: &Output,
+    strengths: &[[f64; L]],
+    bases: &mut [[f64; L]],
+) -> [[f64; L]; 2] {
+    let range = output.first as usize..output.end as usize;
+    match output.form() {
+        ClosedForm::Partition => Pair::integrals(&table.pairs()[range], strengths, Pair::cut),
+        ClosedForm::ScaledPartition => {
+            Pair::integrals(&table.pairs()[range], strengths, Pair::scaled)
+        }
+        ClosedForm::Layers => {
+            let layered = table.layered_sets()[output.first as usize];
+            layered.integrals(table, strengths, bases)
+        }
+        ClosedForm::Moments => {
+            let (mut areas, mut moments) = ([0.0; L], [0.0; L]);
+            for (Moment { area, moment }, strengths) in table.moments()[range].iter().zip(strengths)
+            {
+                for row in 0..L {
+                    areas[row] += strengths[row] * area;
+                    moments[row] += strengths[row] * moment;
+                }
+            }
+            [areas, moments]
+        }
+        ClosedForm::Integrated
+        | ClosedForm::Cut
+        | ClosedForm::Scaled
+        | ClosedForm::Tsukamoto
+        | ClosedForm::WeightedAverage
+        | ClosedForm::WeightedSum => [[0.0; L]; 2],
+    }
+}
+
+/// Returns the area and the centroid of a set in one row; `None` if it is empty or has no closed form.
+pub(super) fn area_and_centroid<A: Arrays>(
+    table: &A,
+    output: &Output,
+    strengths: &[[f64; 1]],
+    bases: &mut [[f64; 1]],
+) -> Option<(f64, f64)> {
+    let (area, moment) = match output.form() {
+        ClosedForm::Cut | ClosedForm::Scaled => {
+            super::set::integrals(table, output, strengths.as_flattened())?
+        }
+        _ => {
+            let [[area], [moment]] = integrals(table, output, strengths, bases);
+            (area, moment)
+        }
+    };
+    (area > 0.0).then(|| (area, output.centroid((area, moment))))
 }
 
 /// Works like [`closed`]. It is a separate function because its code would take registers from that of partitions.

@@ -63,6 +63,7 @@ mod blocks;
 pub(crate) mod chain;
 mod check;
 mod closed;
+pub(crate) mod closed_reduction;
 mod conjunctions;
 mod firing;
 pub(crate) mod flank;
@@ -72,6 +73,7 @@ pub(crate) mod numeric;
 pub(crate) mod operators;
 mod outcome;
 mod raising;
+pub(crate) mod reduction;
 pub(crate) mod results;
 mod rules;
 pub(crate) mod set;
@@ -93,6 +95,7 @@ pub use input::{Curve, Input, Line, Point};
 pub use layers::{Base, LayeredSet, Layers};
 pub use operators::{Aggregation, Conjunction, Disjunction, Hedge, Implication};
 pub use outcome::{Outcome, State};
+pub use reduction::TypeReduction;
 pub use rules::{Action, AntecedentStep, Axis, Dimension, Edge, Node, Op, Program};
 pub use set::{FuzzySet, OfMaxima, Section, SetDefuzzifier, SetTerm, Strand};
 
@@ -166,7 +169,17 @@ pub struct Output {
     pub end_strength: u32,
     /// 1 if a value outside the range is clamped to it, else 0. Only Takagi-Sugeno outputs can leave their range.
     pub clamps: u32,
+    /// The code of the [`TypeReduction`]: 1 plus the index in [`TypeReduction::ALL`]. 0 if the value is not an interval,
+    /// [`LOWER_BOUNDS`] if the output has only the lower bounds of the firing strengths of another output.
+    pub reduction: u32,
+    /// The index of the output with the lower bounds of the firing strengths, if the value is an interval.
+    pub lower: u32,
 }
+
+/// The code of an output that has only the lower bounds of the firing strengths of another output. Such outputs are behind
+/// all others and have no outcomes.
+#[doc(hidden)] // Exported data.
+pub const LOWER_BOUNDS: u32 = u32::MAX;
 
 /// The working memory of an evaluation, with the [`Sizes`] of the table: slices or vectors of numbers, partial
 /// conjunctions and strongest rules.
@@ -186,7 +199,7 @@ pub struct Buffers<N, P, S> {
     pub stack: N,
     /// [`Sizes::strengths`] elements.
     pub strengths: N,
-    /// One element per output.
+    /// One element per output, including outputs without outcomes.
     pub strongest: S,
 }
 
@@ -218,7 +231,19 @@ impl Output {
 }
 
 impl Table<'_> {
-    /// Evaluates one value per input into one outcome per output. It does not allocate. It does not panic if
+    /// Returns the number of outcomes: all outputs except those that have only lower bounds of firing strengths.
+    pub const fn outcomes(&self) -> usize {
+        let (mut count, mut i) = (0, 0);
+        while i < self.outputs.len() {
+            if self.outputs[i].reduction != LOWER_BOUNDS {
+                count += 1;
+            }
+            i += 1;
+        }
+        count
+    }
+
+    /// Evaluates one value per input into the [outcomes](Table::outcomes), one per output. It does not allocate. It does not panic if
     /// [`Table::check`] succeeds and the scratch memory has the sizes of the table.
     ///
     /// A value outside the range of its input is clamped to it; the outcome reports that. If a value is NaN or
@@ -316,6 +341,12 @@ pub(crate) fn evaluate_row<A, N, P, S>(
             &mut results,
         );
         *outcome = results.outcome(0);
+        let output = &table.outputs()[index];
+        if output.reduction != 0 && matches!(outcome.state, State::Defined(_)) {
+            let given = (&scratch.values[..], &scratch.strengths[..]);
+            let state = reduction::reduced(table, output, given, &mut scratch.stack);
+            outcome.state = state.unwrap_or(outcome.state);
+        }
     }
 }
 

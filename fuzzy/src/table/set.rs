@@ -150,24 +150,30 @@ struct SetSegment<'t> {
     from_left: bool,
 }
 
+/// Returns the area and the moment of a prepared set, in the unit of the other closed forms: 1, except for extreme ranges.
+pub(super) fn integrals<A: Arrays>(
+    table: &A,
+    output: &Output,
+    strengths: &[f64],
+) -> Option<(f64, f64)> {
+    let prepared = SetArrays::of(table, output)?;
+    let (area, moment) = prepared.integrals(strengths);
+    let unit = match (1e-100..1e100).contains(&(output.high - output.low)) {
+        true => prepared.measure.unit,
+        false => 1.0,
+    };
+    Some((unit * area, unit * moment))
+}
+
 /// Returns the value of a prepared set; `None` if its area is 0.
 pub(super) fn value<A: Arrays>(table: &A, output: &Output, strengths: &[f64]) -> Option<f64> {
-    let set = table.sets().get(output.first as usize)?;
-    let prepared = SetArrays {
-        set,
-        sections: &table.sections()[set.first_section as usize..set.end_section as usize],
-        strands: table.strands(),
-        terms: &table.set_terms()[set.first_term as usize..set.end_term as usize],
-        flanks: table.flanks(),
-        knots: table.knots(),
-        measure: Measure {
-            origin: output.origin(),
-            unit: set.unit,
-        },
-        scales: output.form() == ClosedForm::Scaled,
-    };
+    let prepared = SetArrays::of(table, output)?;
+    let set = prepared.set;
     let value = match *SetDefuzzifier::ALL.get(set.defuzzifier as usize)? {
-        SetDefuzzifier::Centroid => prepared.centroid(strengths),
+        SetDefuzzifier::Centroid => {
+            let (area, moment) = prepared.integrals(strengths);
+            super::centroid(area, moment, prepared.measure.origin)
+        }
         SetDefuzzifier::Bisector if set.sum == 0 => prepared.bisector(strengths),
         SetDefuzzifier::Bisector => prepared.bisector_of_sum(output, strengths),
         SetDefuzzifier::Maxima(which) => prepared.maxima(which, strengths),
@@ -176,7 +182,25 @@ pub(super) fn value<A: Arrays>(table: &A, output: &Output, strengths: &[f64]) ->
 }
 
 impl<'t> SetArrays<'t> {
-    fn centroid(&self, strengths: &[f64]) -> Option<f64> {
+    fn of<A: Arrays>(table: &'t A, output: &Output) -> Option<Self> {
+        let set = table.sets().get(output.first as usize)?;
+        Some(SetArrays {
+            set,
+            sections: &table.sections()[set.first_section as usize..set.end_section as usize],
+            strands: table.strands(),
+            terms: &table.set_terms()[set.first_term as usize..set.end_term as usize],
+            flanks: table.flanks(),
+            knots: table.knots(),
+            measure: Measure {
+                origin: output.origin(),
+                unit: set.unit,
+            },
+            scales: output.form() == ClosedForm::Scaled,
+        })
+    }
+
+    /// Returns the area and the moment about the origin.
+    fn integrals(&self, strengths: &[f64]) -> (f64, f64) {
         let (mut area, mut moment) = (0.0, 0.0);
         if self.set.sum != 0 {
             for (term, &strength) in self.terms.iter().zip(strengths) {
@@ -196,7 +220,7 @@ impl<'t> SetArrays<'t> {
                 });
             }
         }
-        super::centroid(area, moment, self.measure.origin)
+        (area, moment)
     }
 
     fn flanks_of(&self, term: &SetTerm) -> &'t [Flank] {

@@ -16,6 +16,10 @@ type Bounds = [f64; 2];
 pub struct Interval {
     pub low: f64,
     pub high: f64,
+    /// Nie and Tan: the centroid of the mean of the lower and the upper set.
+    pub nie_tan: f64,
+    /// Begian, Melek and Mendel: the mean of the centroids of both sets.
+    pub begian_melek_mendel: f64,
     /// The area of the lower set, as a share of that of the upper one; 1 for weighted numbers.
     pub lower_share: f64,
 }
@@ -95,6 +99,20 @@ fn is(model: &Model, point: &[f64], proposition: &Proposition) -> Bounds {
     ends
 }
 
+/// From the areas and moments of the lower and the upper set.
+fn nie_tan([lower, upper]: [(f64, f64); 2]) -> f64 {
+    (lower.1 + upper.1) / (lower.0 + upper.0)
+}
+
+/// From the areas and moments of the lower and the upper set; without a lower set the centroid of the upper one.
+fn begian_melek_mendel([lower, upper]: [(f64, f64); 2]) -> f64 {
+    let upper = upper.1 / upper.0;
+    match lower.0 > 0.0 {
+        true => 0.5 * (lower.1 / lower.0 + upper),
+        false => upper,
+    }
+}
+
 /// The smallest and the largest weighted average, or sum, over all combinations of the ends of the weights.
 fn weighted(
     model: &Model,
@@ -117,6 +135,12 @@ fn weighted(
         other => panic!("{other:?}"),
     };
     let numbers: Vec<f64> = fired.iter().map(|(_, term)| number(term)).collect();
+    let sums = [0, 1].map(|side| {
+        let terms = fired.iter().zip(&numbers);
+        let moment = terms.map(|((weights, _), number)| weights[side] * number);
+        let area = fired.iter().map(|(weights, _)| weights[side]);
+        (area.sum::<f64>(), moment.sum::<f64>())
+    });
     let mut ends = (f64::INFINITY, f64::NEG_INFINITY);
     for corner in 0..1_usize << fired.len() {
         let weight = |i: usize| fired[i].0[corner >> i & 1];
@@ -132,6 +156,8 @@ fn weighted(
     Some(Interval {
         low: ends.0,
         high: ends.1,
+        nie_tan: nie_tan(sums),
+        begian_melek_mendel: begian_melek_mendel(sums),
         lower_share: 1.0,
     })
 }
@@ -202,6 +228,8 @@ fn centroids(
     Some(Interval {
         low: ends.0,
         high: ends.1,
+        nie_tan: nie_tan([0, 1].map(|side| (area[side], moment[side]))),
+        begian_melek_mendel: begian_melek_mendel([0, 1].map(|side| (area[side], moment[side]))),
         lower_share: area[0] / area[1],
     })
 }

@@ -25,6 +25,9 @@ mod exported {
     pub mod tipper {
         include!("../../exported/rules_tipper.rs");
     }
+    pub mod type2 {
+        include!("../../exported/rules_type2.rs");
+    }
 }
 
 fn root() -> PathBuf {
@@ -34,7 +37,12 @@ fn root() -> PathBuf {
 /// The rule sets of these tests: name and text.
 fn rule_sets() -> Vec<(String, String)> {
     let mut found = Vec::new();
-    for folder in ["tests/onboard", "tests/conformance", "rules"] {
+    for folder in [
+        "tests/onboard",
+        "tests/type2-onboard",
+        "tests/conformance",
+        "rules",
+    ] {
         for entry in std::fs::read_dir(root().join(folder)).unwrap() {
             let path = entry.unwrap().path();
             if path
@@ -84,15 +92,17 @@ fn reported(outcomes: &[Outcome]) -> String {
     };
     let one = |outcome: &Outcome| {
         let state = match outcome.state {
-            State::Defined(_) => 0,
+            State::Defined(_) | State::Interval { .. } => 0,
             State::Default(_) => 1,
             State::NoRuleFired => 2,
             State::InputNotFinite => 3,
-            State::Previous(_) | State::Interval { .. } => panic!("{outcome:?}"),
+            State::Previous(_) => panic!("{outcome:?}"),
         };
         format!(
-            "{state} {} {} {} {}",
+            "{state} {} {} {} {} {} {}",
             bits(outcome.value().unwrap_or(f64::NAN)),
+            bits(outcome.low().unwrap_or(f64::NAN)),
+            bits(outcome.high().unwrap_or(f64::NAN)),
             bits(outcome.coverage),
             outcome.dominant_rule.map_or(-1, |rule| rule as i64),
             i32::from(outcome.clamped)
@@ -114,10 +124,10 @@ fn by_the_engine(engine: &Engine, points: &[Vec<f64>]) -> Vec<String> {
 
 fn lent(rules: &Rules<'_>, points: &[Vec<f64>]) -> Vec<String> {
     assert_eq!(rules.check(), Ok(()));
-    let outputs = rules.table.outputs.len();
+    let outputs = rules.outputs();
     let mut numbers = vec![0.0; rules.numbers()];
     let mut partials = vec![PartialConjunction::NONE; rules.partials()];
-    let mut strongest = vec![StrongestRule::NONE; outputs];
+    let mut strongest = vec![StrongestRule::NONE; rules.table.outputs.len()];
     let [mut all, mut own] = [(); 2].map(|()| vec![Outcome::UNDEFINED; outputs]);
     let memory = RuleMemory {
         numbers: &mut numbers,
@@ -166,6 +176,7 @@ fn in_c(
 #[test]
 fn rule_sets_agree_with_the_engine_in_borrowed_memory_and_in_c() {
     let (folder, mut refused, mut chains) = (Folder::new(), Vec::new(), 0);
+    let mut intervals = 0;
     let rule_sets = rule_sets();
     for (name, text) in &rule_sets {
         let model: Model = text.parse().unwrap();
@@ -175,13 +186,14 @@ fn rule_sets_agree_with_the_engine_in_borrowed_memory_and_in_c() {
             continue;
         };
         chains += usize::from(!rules.stages.is_empty());
+        intervals += usize::from(model.has_type2_terms());
         let points = points(&model);
         let expected = by_the_engine(&engine, &points);
         assert_same(&expected, &lent(&rules, &points), name);
         let found = in_c(&folder, name, text, &model, &points);
         assert_same(&expected, &found, &format!("{name} in C"));
     }
-    assert!(chains >= 1);
+    assert!(chains >= 2 && intervals >= 2);
     assert!(rule_sets.len() >= 20, "{rule_sets:?}");
     // The centroid of singletons has no closed form.
     assert_eq!(refused, ["conformance_numbers"]);
@@ -236,6 +248,11 @@ fn exported_rust_agrees_with_the_engine() {
         "rules/tipper.yaml",
         exported::tipper::evaluate,
         "rules_tipper.rs",
+    );
+    exported(
+        "tests/type2-onboard/numbers.yaml",
+        exported::type2::evaluate,
+        "rules_type2.rs",
     );
 }
 
@@ -311,6 +328,24 @@ fn rule_sets_that_keep_previous_values_are_refused_with_help() {
         .output()
         .unwrap();
     assert_eq!(output.status.code(), Some(2), "{output:?}");
+}
+
+#[test]
+fn an_interval_of_fuzzy_sets_is_refused_with_help() {
+    let sets = std::fs::read_to_string(root().join("tests/type2-onboard/sets.yaml")).unwrap();
+    let text = sets.replacen("type_reduction: nie_tan", "type_reduction: exact", 1);
+    let file = Folder::new();
+    let path = file.file("exact.yaml", text);
+    for option in ["--rust", "--c"] {
+        let output = flagred().args(["export", option, &path]).output().unwrap();
+        assert_eq!(output.status.code(), Some(3), "{output:?}");
+        let reported = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            reported.contains("the interval of output `speed` is computed from fuzzy sets")
+                && reported.contains("help: use `type_reduction: nie_tan`"),
+            "{reported}"
+        );
+    }
 }
 
 #[test]

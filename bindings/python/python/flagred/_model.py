@@ -24,6 +24,7 @@ _ENDINGS: dict[str, Literal["yaml", "fis", "fll", "fcl", "fml", "rust", "c"]] = 
     ".yaml": "yaml",
     ".yml": "yaml",
     ".fis": "fis",
+    ".t2fis": "fis",
     ".fll": "fll",
     ".fcl": "fcl",
     ".fml": "fml",

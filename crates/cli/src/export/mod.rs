@@ -147,7 +147,7 @@ impl Arguments {
     /// Refuses an output file with the extension of another format, so that a rule set named by mistake is not replaced.
     fn check_ending(&self) -> Result<(), Failure> {
         let (what, endings): (&str, &[&str]) = match self.format() {
-            Some(Format::Fis) => ("FIS", &["fis"]),
+            Some(Format::Fis) => ("FIS", &["fis", "t2fis"]),
             Some(Format::Fll) => ("FLL", &["fll"]),
             Some(Format::Fcl) => ("FCL", &["fcl"]),
             Some(Format::Fml) => ("FML", &["xml", "fml"]),

@@ -123,8 +123,9 @@ fn heading(model: &Model, rules: &Rules<'_>, option: &str, memory: usize) -> Vec
 
 /// The stack that an evaluation in Rust needs.
 fn stack_bytes(rules: &Rules<'_>) -> usize {
-    let outputs = rules.table.outputs.len();
+    let strongest = rules.table.outputs.len() * size_of::<StrongestRule>();
     rules.numbers() * size_of::<f64>()
         + rules.partials() * size_of::<PartialConjunction>()
-        + outputs * (size_of::<StrongestRule>() + 2 * size_of::<Outcome>())
+        + strongest
+        + rules.outputs() * 2 * size_of::<Outcome>()
 }

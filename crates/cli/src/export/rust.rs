@@ -123,7 +123,7 @@ pub(super) fn function(rules: &Rules<'_>, heading: &[String]) -> String {
         line_of(out, format_args!("// {line}"));
     }
     let table = &rules.table;
-    let (sizes, inputs, outputs) = (table.sizes, rules.inputs(), table.outputs.len());
+    let (sizes, inputs, outputs) = (table.sizes, rules.inputs(), rules.outputs());
     let (kind, values, of_stages) = match rules.stages {
         [] => ("Table", "", String::new()),
         _ => (
@@ -157,7 +157,7 @@ pub fn evaluate(inputs: &[f64; {inputs}]) -> [::fuzzy::table::Outcome; {outputs}
         next: &mut [PartialConjunction::NONE; {partial}],
         stack: &mut [0.0; {}],
         strengths: &mut [0.0; {}],
-        strongest: &mut [StrongestRule::NONE; {outputs}],
+        strongest: &mut [StrongestRule::NONE; {}],
     }};{of_stages}
     let mut outcomes = [Outcome::UNDEFINED; {outputs}];
     RULES.evaluate(&mut scratch, {values}inputs, &mut outcomes);
@@ -178,6 +178,7 @@ pub static RULES: ::fuzzy::table::{kind}<'static> = {{
             sizes.alive,
             sizes.stack,
             sizes.strengths,
+            table.outputs.len(),
             partial = sizes.partial,
         ),
     );

@@ -7,4 +7,5 @@ pub(crate) use write::write;
 mod read;
 mod rules;
 mod term;
+mod type2;
 mod write;

@@ -5,7 +5,11 @@ use fuzzy::{
     model::{Defuzzifier, Formula, Output, Variable},
 };
 
-use super::{rules, term};
+use super::{
+    rules,
+    term::{self, ParameterForm},
+    type2,
+};
 use crate::{
     Format, Losses,
     model_draft::{self, MAX_VARIABLES, ModelDraft},
@@ -70,9 +74,12 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
         return draft.finish();
     };
     let mut entries = sections.iter().flat_map(|section| &section.entries);
-    if let Some(entry) = entries.find(|entry| is_of_type2(entry.key)) {
-        type2(&mut draft, entry.key);
-        return draft.finish();
+    let is_type2 = entries.any(|entry| type2::bound(entry.key).is_some());
+    if is_type2 && !weighted {
+        let part = system.get("Type").unwrap_or(system.name);
+        let message = "the terms are type-2 terms, but the system is a Mamdani system".into();
+        let help = "files with `MF1U` and `MF1L` are those of the IT2-FLS toolbox, which has only Sugeno systems";
+        draft.error("type-2", part, message, help);
     }
     operators(&mut draft, system, weighted);
     let inputs = Section::numbered(&sections, "Input");
@@ -82,7 +89,8 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
         if !draft.has_room(count, MAX_VARIABLES, "inputs", section.name) {
             break;
         }
-        if let Some((variable, spans)) = variable(&mut draft, section, &names, false) {
+        let form = ParameterForm::Plain;
+        if let Some((variable, spans)) = variable(&mut draft, section, &names, false, form) {
             draft.model.inputs.push(variable);
             draft.spans.inputs.push(spans);
         }
@@ -93,7 +101,11 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
         if !draft.has_room(count, MAX_VARIABLES, "outputs", section.name) {
             break;
         }
-        if let Some((variable, spans)) = variable(&mut draft, section, &names, weighted) {
+        let form = match is_type2 {
+            true => ParameterForm::Repeated,
+            false => ParameterForm::Plain,
+        };
+        if let Some((variable, spans)) = variable(&mut draft, section, &names, weighted, form) {
             // fuzzylite writes Tsukamoto outputs as weighted averages of fuzzy sets.
             let defuzzifier = match variable.terms.iter().any(shapes::is_computed) {
                 false if defuzzifier == Defuzzifier::WeightedAverage => Defuzzifier::Tsukamoto,
@@ -106,6 +118,10 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
             draft.spans.outputs.push(spans);
         }
     }
+    if is_type2 {
+        let (method, and) = (system.get("TypeRedMethod"), system.get("AndMethod"));
+        type2::settings(&mut draft, method, and);
+    }
     let outputs = draft.model.outputs.len();
     count(&mut draft, system, "NumInputs", names.len());
     count(&mut draft, system, "NumOutputs", outputs);
@@ -117,7 +133,11 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
         let entries = section.map_or(&[][..], |section| &section.entries);
         count(&mut draft, system, "NumRules", entries.len());
         for entry in entries {
+            let rules = draft.model.rules.len();
             rules::read(&mut draft, entry.value);
+            if is_type2 && draft.model.rules.len() > rules {
+                type2::check_rule(&mut draft, entry.value);
+            }
         }
     }
     draft.finish()
@@ -185,22 +205,6 @@ fn without_comment(line: &str) -> &str {
     line
 }
 
-/// Whether a key is that of an upper or lower membership function, such as `MF2U`.
-fn is_of_type2(key: &str) -> bool {
-    let key = key.to_ascii_uppercase();
-    let number = key
-        .strip_prefix("MF")
-        .and_then(|key| key.strip_suffix(['U', 'L']));
-    number.is_some_and(|number| number.parse::<usize>().is_ok())
-}
-
-fn type2(draft: &mut ModelDraft<'_>, part: &str) {
-    let shown = unquoted(part);
-    let message = format!("`{shown}` is of a type-2 system, which cannot be imported");
-    let help = "MATLAB's `convertToType1` makes it a system that can be read";
-    draft.error("type-2", part, message, help);
-}
-
 /// Whether the system is a Sugeno system; `None`, with an error, if its type is not supported.
 fn kind(draft: &mut ModelDraft<'_>, system: &Section<'_>) -> Option<bool> {
     let word = system.get("Type").unwrap_or("mamdani");
@@ -209,7 +213,9 @@ fn kind(draft: &mut ModelDraft<'_>, system: &Section<'_>) -> Option<bool> {
         // fuzzylite writes `tsukamoto` if the terms of outputs are monotone sets.
         "sugeno" | "tsukamoto" => Some(true),
         other if other.contains("type2") => {
-            type2(draft, word);
+            let message = format!("the type-2 system `{other}` cannot be read");
+            let help = "the text of MATLAB's own type-2 files is not documented: write the terms in YAML, where `lower_scale` and `lower_lag` are MATLAB's `LowerScale` and `LowerLag`";
+            draft.error("type-2", word, message, help);
             None
         }
         other => {
@@ -290,6 +296,7 @@ fn variable(
     section: &Section<'_>,
     inputs: &[&str],
     weighted: bool,
+    form: ParameterForm,
 ) -> Option<(Variable, VariableSpans)> {
     let name = name(section);
     let mut spans = VariableSpans::default();
@@ -312,15 +319,35 @@ fn variable(
     let is_term = |entry: &&Entry<'_>| {
         let number = entry.key.split_at_checked(2);
         let number = number.filter(|(mf, _)| mf.eq_ignore_ascii_case("MF"));
-        number.is_some_and(|(_, index)| index.parse::<usize>().is_ok())
+        let is_plain = number.is_some_and(|(_, index)| index.parse::<usize>().is_ok());
+        is_plain || matches!(type2::bound(entry.key), Some((_, 'U')))
     };
+    for entry in &section.entries {
+        if let Some((number, 'L')) = type2::bound(entry.key)
+            && section.get(&format!("MF{number}U")).is_none()
+        {
+            let message = format!("`{}` has no upper membership function", entry.key);
+            draft.error("type-2", entry.key, message, &format!("add `MF{number}U`"));
+        }
+    }
     let terms: Vec<&Entry<'_>> = section.entries.iter().filter(is_term).collect();
     count(draft, section, "NumMFs", terms.len());
     for entry in terms {
         if !draft.has_room_for_term(&variable, entry.value) {
             break;
         }
-        if let Some((mut term, term_spans)) = term::read(draft, entry.value, inputs) {
+        let read = match type2::bound(entry.key) {
+            None => term::read(draft, entry.value, inputs, form),
+            Some((number, _)) => match section.get(&format!("MF{number}L")) {
+                Some(lower) => type2::term(draft, entry.value, lower),
+                None => {
+                    let message = format!("`{}` has no lower membership function", entry.key);
+                    draft.error("type-2", entry.key, message, &format!("add `MF{number}L`"));
+                    continue;
+                }
+            },
+        };
+        if let Some((mut term, term_spans)) = read {
             term.name = distinct(draft, &variable, term.name, &term_spans);
             variable.terms.push(term);
             spans.terms.push(term_spans);

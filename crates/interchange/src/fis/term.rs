@@ -34,10 +34,22 @@ fn decimal_comma(parameters: &str) -> Option<&str> {
     })
 }
 
+/// The parameters that a term has besides those of its shape.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum ParameterForm {
+    /// None.
+    Plain,
+    /// The height, as the last parameter.
+    WithHeight,
+    /// All parameters once more, for the upper end of an interval of numbers.
+    Repeated,
+}
+
 pub(super) fn read(
     draft: &mut ModelDraft<'_>,
     written: &str,
     inputs: &[&str],
+    parameter_form: ParameterForm,
 ) -> Option<(Term, TermSpans)> {
     let parts = written
         .split_once(':')
@@ -63,6 +75,13 @@ pub(super) fn read(
         numbers.push(number(draft, word)?);
         spans.parameters.push(draft.span(word));
     }
+    let height = match parameter_form {
+        ParameterForm::WithHeight => {
+            spans.parameters.pop();
+            numbers.pop().unwrap_or(f64::NAN)
+        }
+        ParameterForm::Plain | ParameterForm::Repeated => 1.0,
+    };
     let mut form = String::new();
     let (function, count) = match shape.to_ascii_lowercase().as_str() {
         "constant" => {
@@ -97,11 +116,19 @@ pub(super) fn read(
             (shapes::read(Format::Fis, known, own)?, count)
         }
     };
-    if numbers.len() < count {
-        let message = format!("`{shape}` has {count} parameters, found {}", numbers.len());
+    let has_height = parameter_form == ParameterForm::WithHeight;
+    if numbers.len() < count || (has_height && numbers.len() > count) {
+        let (and, last) = match has_height {
+            true => (" and a height", " height"),
+            false => ("", ""),
+        };
+        let message = format!(
+            "`{shape}` has {count} parameters{and}, found {}",
+            words.len()
+        );
         let help = match form.is_empty() {
             true => "write a number for each input, and the constant".into(),
-            false => format!("write `[{form}]`"),
+            false => format!("write `[{form}{last}]`"),
         };
         draft.error("parameter-count", shape, message, &help);
         return None;
@@ -114,6 +141,17 @@ pub(super) fn read(
         let help = format!("is `{number}` a decimal comma? write `{point}`");
         draft.error("parameter-count", number, message, &help);
         return None;
+    }
+    if parameter_form == ParameterForm::Repeated
+        && let Some((first, second)) = numbers.split_at_checked(count)
+        && second.len() == count
+    {
+        if first != second {
+            let message = format!("the numbers of the term `{name}` are intervals");
+            let help = "a rule set has single numbers: repeat the same ones, or write a rule set for each end";
+            draft.loss("interval-of-numbers", parameters, message, help);
+        }
+        numbers.truncate(count);
     }
     // Old files pad the parameters of every shape to four numbers.
     if numbers.len() > count
@@ -133,7 +171,7 @@ pub(super) fn read(
     let term = Term {
         name: name.to_owned(),
         membership_function: function,
-        height: 1.0,
+        height,
         lower: None,
     };
     Some((term, spans))

@@ -6,6 +6,7 @@ use fuzzy::{
     rule::{Condition, Hedge, Name},
 };
 
+use super::type2;
 use crate::{
     Format, Losses, WriteResult, conditions,
     names::{self, NameRules},
@@ -72,7 +73,14 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<WriteResult, Findin
         );
     }
     draft.line("\n[Rules]");
+    let is_type2 = model.has_type2_terms();
     for (index, rule) in model.rules.iter().enumerate() {
+        if is_type2 && let Some(what) = type2::unsupported(rule, Some(model.inputs.len())) {
+            let help =
+                "a rule of a type-2 system joins one term of every input by AND, without a weight";
+            draft.leave_out(index + 1, what, help);
+            continue;
+        }
         match line(rule, model) {
             Ok(line) => draft.line(line),
             Err(what) => {
@@ -118,7 +126,12 @@ fn system(draft: &mut TextDraft, model: &Model) {
     draft.line("Version=2.0");
     draft.line(format!("NumInputs={}", model.inputs.len()));
     draft.line(format!("NumOutputs={}", model.outputs.len()));
-    let rules = model.rules.iter().filter(|rule| line(rule, model).is_ok());
+    let is_type2 = model.has_type2_terms();
+    let rules = model.rules.iter().filter(|rule| {
+        let inputs = Some(model.inputs.len());
+        let is_supported = !is_type2 || type2::unsupported(rule, inputs).is_none();
+        is_supported && line(rule, model).is_ok()
+    });
     draft.line(format!("NumRules={}", rules.count()));
     let [and, or, implication] = draft.operators(operators);
     let aggregation = draft.word(
@@ -147,6 +160,10 @@ fn system(draft: &mut TextDraft, model: &Model) {
         draft.refuse("no-word", message, help);
     }
     draft.line(format!("DefuzzMethod='{defuzzifier}'"));
+    if is_type2 {
+        let method = type2::method(draft, model);
+        draft.line(format!("TypeRedMethod='{method}'"));
+    }
     let known = ["min", "max", "prod", "probor", "sum"];
     for word in [and, or, implication, aggregation] {
         if !known.contains(&word) {
@@ -160,12 +177,30 @@ fn variable(draft: &mut TextDraft, variable: &Variable, model: &Model) {
     draft.line(format!("Name='{}'", variable.name));
     draft.line(format!("Range=[{} {}]", variable.low, variable.high));
     draft.line(format!("NumMFs={}", variable.terms.len()));
+    let is_type2 = model.has_type2_terms();
     for (index, term) in variable.terms.iter().enumerate() {
-        let Some((shape, parameters)) = shape(draft, term, variable, model) else {
+        let (number, name) = (index + 1, &term.name);
+        if is_type2 && !type2::is_number(term) {
+            for (letter, bound) in type2::pair(term) {
+                let Some((shape, mut parameters)) = shape(draft, &bound, variable, model) else {
+                    continue;
+                };
+                type2::check_shape(draft, shape, term, variable);
+                parameters.push(bound.height);
+                let parameters = numbers(&parameters);
+                draft.line(format!(
+                    "MF{number}{letter}='{name}{letter}':'{shape}',[{parameters}]"
+                ));
+            }
+            continue;
+        }
+        let Some((shape, mut parameters)) = shape(draft, term, variable, model) else {
             continue;
         };
+        if is_type2 {
+            parameters.extend_from_within(..);
+        }
         let parameters = numbers(&parameters);
-        let (number, name) = (index + 1, &term.name);
         draft.line(format!("MF{number}='{name}':'{shape}',[{parameters}]"));
     }
 }
@@ -178,7 +213,7 @@ fn shape(
 ) -> Option<(&'static str, Vec<f64>)> {
     use MembershipFunction as Of;
     let name = named(term, variable);
-    if term.height != 1.0 {
+    if term.height != 1.0 && !model.has_type2_terms() {
         let message = format!("the term {name} has the height {}", term.height);
         draft.loss("height", message, "terms of FIS have the height 1");
     }

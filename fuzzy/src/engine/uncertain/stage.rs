@@ -7,9 +7,7 @@ use super::super::rules::{FiringOperators, IndexedRule};
 use super::degrees::RangedLiteral;
 use super::formula::{self, Span};
 use super::{Interval, OutputBounds};
-use crate::defuzzify::{
-    ConsequentOperators, EnclosureMethod, Strengths, WeightedNumber, workspace::Workspace,
-};
+use crate::defuzzify::{ConsequentOperators, EnclosureMethod, Strengths, workspace::Workspace};
 use crate::model::{
     Activation, Conjunction, Defuzzifier, Disjunction, MembershipFunction, Model, NoRuleFires,
     Output, chain,
@@ -71,7 +69,6 @@ pub(super) struct RangedScratch {
     of_rules: Vec<(f64, f64)>,
     lower: Vec<f64>,
     upper: Vec<f64>,
-    points: Vec<WeightedNumber>,
     workspace: Workspace,
 }
 
@@ -187,7 +184,6 @@ impl RangedStage {
             of_rules: Vec::new(),
             lower: vec![0.0; self.strengths],
             upper: vec![0.0; self.strengths],
-            points: Vec::new(),
             workspace: Workspace::new(self.strengths, cuts).with_lines(),
         }
     }
@@ -382,7 +378,6 @@ impl RangedOutput {
             values,
             lower,
             upper,
-            points,
             workspace,
             ..
         } = scratch;
@@ -411,13 +406,9 @@ impl RangedOutput {
             let number = numbers.get(term).copied();
             number.unwrap_or((f64::NEG_INFINITY, f64::INFINITY))
         };
-        let enclosed = self.enclosing.interval(
-            strengths(&lower),
-            strengths(&upper),
-            number,
-            workspace,
-            points,
-        );
+        let enclosed =
+            self.enclosing
+                .interval(strengths(&lower), strengths(&upper), number, workspace);
         let fallback = match self.when_no_rule_fires {
             NoRuleFires::Value(value) | NoRuleFires::Previous(Some(value)) => Some(value),
             NoRuleFires::Undefined | NoRuleFires::Error | NoRuleFires::Previous(None) => None,

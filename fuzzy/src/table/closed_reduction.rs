@@ -15,25 +15,24 @@
 //!
 //! Sums over samples in these papers are integrals here. For weighted outputs they are sums over the terms.
 
-use crate::model::TypeReduction;
-use crate::table::operators::{larger, smaller};
+use super::TypeReduction;
+use super::operators::{larger, smaller};
 
 /// A summary of an interval type-2 set or of weighted numbers.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Summary {
+pub(crate) struct Summary {
     /// The area and the centroid of the lower set; `None` if it is empty.
-    pub(super) lower: Option<(f64, f64)>,
+    pub(crate) lower: Option<(f64, f64)>,
     /// The area and the centroid of the upper set.
-    pub(super) upper: (f64, f64),
+    pub(crate) upper: (f64, f64),
     /// The ends of the interval on which the upper set is above 0.
-    pub(super) support: (f64, f64),
+    pub(crate) support: (f64, f64),
 }
 
-/// Returns the ends of the interval that a method of type reduction computes. Both ends are equal for methods that
-/// compute a single number. If there is no lower set, such a method returns the centroid of the upper set, and a
-/// method that computes an interval returns the support. `None` for the exact interval, which does not follow from the
-/// summary.
-pub(super) fn closed(method: TypeReduction, summary: Summary) -> Option<(f64, f64)> {
+/// Returns the ends of the interval of a method; both are equal for methods that give a number. Without a lower set, it is
+/// the centroid of the upper set, or the support for a method that gives an interval. `None` for the exact interval,
+/// which does not follow from the summary.
+pub(crate) fn closed(method: TypeReduction, summary: Summary) -> Option<(f64, f64)> {
     let Summary {
         lower,
         upper: (upper_area, upper),
