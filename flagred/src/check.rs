@@ -9,21 +9,23 @@ use core::ops::Range;
 
 use fuzzy::{
     Findings, Model,
-    check::extent,
     diagnostic::{Diagnostic, Severity, nearest, suggest},
-    tree::{Node, Value, percentage_of_share},
+    tree::{Node, Value},
 };
 
 use crate::{
     estimator::{Estimator, EstimatorError},
     profile::{Profile, ProfileInput},
-    source::{Motors, Signal, Source, Statistic, is_angle},
-    verdict::{LevelSettings, Threshold},
+    source::{Signal, Statistic, is_angle},
 };
 
 mod alone;
+mod reach;
+mod units;
 
 pub use alone::{OutvotedInput, alone};
+use reach::thresholds;
+use units::{durations, elevated_shares, least_divisor, number_of_statistic, range};
 
 /// The minimum share of an input's range that the values of its signal must cover.
 const MIN_SHARE: f64 = 0.02;
@@ -62,6 +64,17 @@ pub fn profile(
     if let Some(estimator) = &estimator {
         thresholds(estimator, &["verdict"], &at, &mut found);
         durations(estimator.profile(), &at, &mut found);
+        found.extend(elevated_shares(
+            &profile.elevated_risk,
+            &["elevated_risk"],
+            &at,
+        ));
+        for risk in &profile.other_risks {
+            let place = ["other_risks", &risk.output, "elevated_risk"];
+            if risk.elevated_risk != profile.elevated_risk {
+                found.extend(elevated_shares(&risk.elevated_risk, &place, &at));
+            }
+        }
         for other in estimator.others() {
             let place = ["other_risks", &other.profile().output];
             thresholds(other, &place, &at, &mut found);
@@ -69,6 +82,7 @@ pub fn profile(
         }
         for input in &profile.inputs {
             found.extend(signal(input, estimator.engine().model(), signals, &at));
+            found.extend(least_divisor(input, &profile, &at));
         }
     }
     let is_usable = found.iter().all(|one| one.severity < Severity::Error);
@@ -233,118 +247,6 @@ fn dropped(
     dropped.collect()
 }
 
-/// Finds thresholds that are never or always reached, and WARN above FAIL.
-fn thresholds(
-    estimator: &Estimator,
-    place: &[&str],
-    at: &ValuePositions,
-    found: &mut Vec<Diagnostic>,
-) {
-    let profile = estimator.profile();
-    let of = |keys: &[&str]| at.of(&[place, keys].concat());
-    let verdict = &profile.verdict;
-    let levels = [("warn", &verdict.warn), ("fail", &verdict.fail)];
-    let never_rises = profile.elevated_risk.rise_pct_per_s == 0.0;
-    if let Some((low, high)) = estimator.extent() {
-        let is_possible = |level: &LevelSettings| {
-            let Threshold {
-                risk_pct,
-                elevated_risk_pct,
-            } = level.raise;
-            let by_risk = risk_pct.is_some_and(|limit| !is_above(limit, high));
-            by_risk || (elevated_risk_pct.is_some() && !never_rises)
-        };
-        if !levels.iter().any(|(_, level)| is_possible(level)) {
-            let message = format!(
-                "neither `warn` nor `fail` can be reached: the rules give at most {}",
-                shown(high)
-            );
-            found
-                .push(Diagnostic::error("out-of-reach", of(&[]), message).help(
-                    "lower the thresholds: with these thresholds every flight would be GOOD",
-                ));
-            return;
-        }
-        for (name, level) in levels {
-            found.extend(reached(name, level, (low, high), of));
-        }
-    }
-    if never_rises {
-        for (name, level) in levels {
-            if level
-                .raise
-                .elevated_risk_pct
-                .is_some_and(|limit| limit > 0.0)
-            {
-                let message = format!(
-                    "`{name}` is never reached by the elevated risk, because that never rises"
-                );
-                let place = of(&[name, "elevated_risk"]);
-                let help = "write `rise_per_s` in `elevated_risk`, or remove the threshold";
-                found.push(Diagnostic::warning("out-of-reach", place, message).help(help));
-            }
-        }
-    }
-    type Limit = fn(&Threshold) -> Option<f64>;
-    let measures: [(&str, Limit); 2] = [
-        ("risk", |threshold| threshold.risk_pct),
-        ("elevated_risk", |threshold| threshold.elevated_risk_pct),
-    ];
-    for (measure, limit) in measures {
-        if let (Some(warn), Some(fail)) = (limit(&verdict.warn.raise), limit(&verdict.fail.raise))
-            && warn > fail
-        {
-            let message =
-                format!("`warn` at {measure} {warn} is above `fail` at {fail}: FAIL comes first");
-            let place = of(&["warn", measure]);
-            let finding = Diagnostic::warning("order", place, message)
-                .help(format!(
-                    "lower `warn` to {fail} or below, or raise `fail` to {warn} or above"
-                ))
-                .related(of(&["fail", measure]), "FAIL");
-            found.push(finding);
-        }
-    }
-}
-
-/// A longer window, in seconds, causes a warning.
-const LONGEST_WINDOW_S: f64 = 600.0;
-/// A longer `after_s` of a level, in seconds, causes a warning.
-const LONGEST_WAIT_S: f64 = 30.0;
-
-/// Finds windows and waits that are so long that their unit is probably wrong.
-fn durations(profile: &Profile, at: &ValuePositions, found: &mut Vec<Diagnostic>) {
-    let mut note = |path: &[&str], message: String, help: &str| {
-        found.push(Diagnostic::warning("unit", at.of(path), message).help(help));
-    };
-    let window = "windows are in seconds; a risk over a longer window comes too late";
-    let mut long = |path: &[&str], window_s: f64| {
-        if window_s > LONGEST_WINDOW_S {
-            note(
-                path,
-                format!("the window of {window_s} s is longer than most flights"),
-                window,
-            );
-        }
-    };
-    long(&["window_s"], profile.window_s);
-    for input in &profile.inputs {
-        if input.source.window_s.to_bits() != profile.window_s.to_bits() {
-            long(&["inputs", &input.name, "window_s"], input.source.window_s);
-        }
-    }
-    for (name, level) in [
-        ("warn", &profile.verdict.warn),
-        ("fail", &profile.verdict.fail),
-    ] {
-        if level.after_s > LONGEST_WAIT_S {
-            let message = format!("`{name}` is raised only after {} s", level.after_s);
-            let help = "`after_s` is in seconds; control can be lost within one second";
-            note(&["verdict", name, "after_s"], message, help);
-        }
-    }
-}
-
 fn is_above(limit: f64, high: f64) -> bool {
     const ROUNDING: f64 = 1e-6;
     limit > high + ROUNDING
@@ -353,64 +255,6 @@ fn is_above(limit: f64, high: f64) -> bool {
 /// A percentage rounded for a message.
 fn shown(x: f64) -> f64 {
     (x * 10.0).round() / 10.0
-}
-
-/// Finds thresholds of a level that the risk cannot reach, or always reaches.
-fn reached(
-    name: &str,
-    level: &LevelSettings,
-    (low, high): (f64, f64),
-    of: impl Fn(&[&str]) -> Range<usize>,
-) -> Vec<Diagnostic> {
-    let mut found = Vec::new();
-    let place = |key: &[&str]| of(&[&[name], key].concat());
-    if let Some(limit) = level.raise.risk_pct
-        && (low..1.0).contains(&limit)
-        && limit > 0.0
-    {
-        let message = format!("`{name}` at risk {limit} is raised below 1 %");
-        let help = format!(
-            "thresholds are in percent: did you mean {}?",
-            shown(100.0 * limit)
-        );
-        found.push(Diagnostic::warning("unit", place(&["risk"]), message).help(help));
-    }
-    if let Some(limit) = level.raise.risk_pct {
-        let above = is_above(limit, high);
-        if above || limit <= low {
-            let (what, bound) = match above {
-                true => ("is never reached", format!("at most {}", shown(high))),
-                false => ("is always reached", format!("at least {}", shown(low))),
-            };
-            let message = format!("`{name}` at risk {limit} {what}: the rules give {bound}");
-            let help = match above {
-                true => {
-                    "lower the threshold in `verdict`, or make the last term of the output narrower: the centroid of a term is inside the term"
-                }
-                false => {
-                    "raise the threshold in `verdict` above the lowest risk that the rules give"
-                }
-            };
-            let help = match limit > 0.0 && limit <= 1.0 && !above {
-                true => format!("risks are in percent: did you mean {}?", limit * 100.0),
-                false => help.into(),
-            };
-            found.push(Diagnostic::warning("out-of-reach", place(&["risk"]), message).help(help));
-        }
-    }
-    if let Some(until) = level.until.risk_pct
-        && until <= low
-        && level.raise.risk_pct.is_none_or(|limit| limit > low)
-    {
-        let message = format!(
-            "`{name}` is never lowered: it lasts until the risk falls below {until}, but the rules give at least {}",
-            shown(low)
-        );
-        let help = "raise `until` above the lowest risk that the rules give";
-        let place = place(&["until", "risk"]);
-        found.push(Diagnostic::warning("out-of-reach", place, message).help(help));
-    }
-    found
 }
 
 /// Finds a mismatch between an input of the rule set and its signal.
@@ -555,112 +399,6 @@ fn motor_column(name: &str) -> Option<u32> {
 fn normal(unit: &str) -> String {
     let unit = unit.trim().replace('°', "deg").replace('²', "2");
     unit.to_ascii_lowercase()
-}
-
-/// The minimum and maximum of a signal, after the motors of a sample are combined.
-fn range_of_signal(source: &Source) -> (f64, f64) {
-    let (low, high) = match &source.signal {
-        Signal::MotorMargin => (0.0, 0.5),
-        Signal::MotorCommand | Signal::MotorMarginLowSide | Signal::MotorMarginHighSide => {
-            (0.0, 1.0)
-        }
-        Signal::CommandNoise => (0.0, 1.0),
-        _ => (f64::NEG_INFINITY, f64::INFINITY),
-    };
-    match source.motors {
-        Motors::Std => (0.0, (high - low) / 2.0),
-        Motors::Pooled | Motors::Mean | Motors::Min | Motors::Max | Motors::One(_) => (low, high),
-    }
-}
-
-/// Warns about a threshold or a percentile that seems to have another unit: a threshold that the signal never crosses,
-/// or a percentile between 0 and 1.
-fn number_of_statistic<'k>(
-    input: &ProfileInput,
-    unit_of: impl Fn(&str) -> Option<&'k str>,
-    at: &ValuePositions,
-) -> Option<Diagnostic> {
-    let source = &input.source;
-    let finding = |key: &str, message: String, meant: Option<f64>| {
-        let place = at.of(&["inputs", &input.name, key]);
-        let finding = Diagnostic::warning("unit", place, message);
-        Some(match meant {
-            Some(meant) => finding.help(format!("did you mean `{key}: {meant}`?")),
-            None => finding.help("write a threshold between these"),
-        })
-    };
-    let (key, threshold) = match source.statistic {
-        Statistic::ShareBelow(threshold) => ("share_below", threshold),
-        Statistic::ShareAbove(threshold) => ("share_above", threshold),
-        Statistic::Percentile(number) if number > 0.0 && number < 1.0 => {
-            let message = format!("`percentile` is in percent, and {number} is a share");
-            return finding("percentile", message, Some(percentage_of_share(number)));
-        }
-        _ => return None,
-    };
-    let name = match &source.signal {
-        Signal::Named(name) => name,
-        signal => Signal::name_of(signal)?,
-    };
-    let is_percent = unit_of(name) == Some("%");
-    let (low, high) = match is_percent {
-        true => (0.0, 100.0),
-        false => range_of_signal(source),
-    };
-    let is_above = key == "share_above";
-    let never = match is_above {
-        true => threshold >= high,
-        false => threshold <= low,
-    };
-    let always = match is_above {
-        true => threshold < low,
-        false => threshold > high,
-    };
-    let side = key.trim_start_matches("share_");
-    let inside = |meant: &f64| *meant > low && *meant < high;
-    let what = format!("`{name}` is from {low} to {high}");
-    let message = match (never, always) {
-        (true, _) => format!("{what}, so it is never {side} {threshold}"),
-        (_, true) => format!("{what}, so it is always {side} {threshold}"),
-        _ if is_percent && threshold < 1.0 => {
-            format!("`{name}` is in percent, and {threshold} is a share")
-        }
-        _ => return None,
-    };
-    let meant = match is_percent {
-        true => Some(percentage_of_share(threshold)),
-        false => Some(threshold / 100.0).filter(|_| threshold > 1.0),
-    };
-    finding(key, message, meant.filter(inside))
-}
-
-/// The minimum and maximum of the values of a source; `None` if it is unbounded.
-fn range(source: &Source) -> Option<(f64, f64)> {
-    let (low, high) = range_of_signal(source);
-    let (low, high) = match source.statistic {
-        Statistic::ShareBelow(_) | Statistic::ShareAbove(_) => (0.0, 1.0),
-        Statistic::Std | Statistic::StdLessNoise => (0.0, (high - low) / 2.0),
-        Statistic::Noise => (0.0, high - low),
-        Statistic::Rate => return None,
-        Statistic::Mean
-        | Statistic::Rms
-        | Statistic::Min
-        | Statistic::Max
-        | Statistic::Last
-        | Statistic::Percentile(_) => (low, high),
-    };
-    high.is_finite().then_some((low, high))
-}
-
-impl Estimator {
-    /// The smallest and largest risk that the rules and the filled gaps can give; `None` if they are unknown.
-    fn extent(&self) -> Option<(f64, f64)> {
-        let (low, high) = extent(self.model(), &self.profile().output)?;
-        let filled = self.filled().iter().copied();
-        Some(filled.fold((low, high), |(low, high), value| {
-            (low.min(value), high.max(value))
-        }))
-    }
 }
 
 #[cfg(test)]

@@ -13,7 +13,11 @@ use alloc::{
     vec::Vec,
 };
 
-use fuzzy::{Findings, Source, diagnostic::nearest, tree::Value};
+use fuzzy::{
+    Findings, Source,
+    diagnostic::nearest,
+    tree::{Node, Value},
+};
 
 use crate::{check, estimator::Estimator, profile::Profile, shipped};
 
@@ -351,8 +355,8 @@ pub fn is_meant_as_rules(text: &str) -> bool {
     })
 }
 
-/// Whether a text is meant to be a profile: whether it has the key `flagred` or the settings of a profile, and not the
-/// outputs of a rule set. A text that is not valid YAML yet is searched for the key.
+/// Whether a text is meant to be a profile: whether it has the key `flagred` or the settings of a profile, or names its
+/// rules, and does not have the outputs of a rule set. A text that is not valid YAML yet is searched for the key.
 #[doc(hidden)] // For the programs of this repository.
 pub fn is_profile(source: &Source) -> bool {
     let tree = source.tree();
@@ -374,7 +378,11 @@ pub fn is_profile(source: &Source) -> bool {
         "other_risks",
     ];
     let is_rules = has("outputs") || has("blocks");
-    !is_rules && (has("flagred") || settings.iter().any(|key| has(key)))
+    let rules = tree.child("rules").and_then(Node::as_text);
+    let names_rules =
+        rules.is_some_and(|rules| !rules.is_empty() && !rules.contains(char::is_whitespace));
+    let names_rules = names_rules && !has("fuzzy");
+    !is_rules && (has("flagred") || names_rules || settings.iter().any(|key| has(key)))
 }
 
 /// Whether a file, with all links resolved, is in the folder of its profile or in the folder that the caller allows.

@@ -102,6 +102,14 @@ fn assess_by(
             _ => {}
         }
     }
+    if let Verdict::NotAvailable(Reason::RiskUnknown {
+        explanation, help, ..
+    }) = &mut assessment.verdict
+        && flight.commands.rows().len() == 1
+    {
+        *explanation = "the log has only one sample of the motor commands".into();
+        *help = Some("log several seconds, at 5 Hz or more");
+    }
     if let Verdict::NotAvailable(Reason::MotorUnknown { motor, .. }) = &mut assessment.verdict
         && let Some(logged) = flight.motors.get(*motor - 1)
     {

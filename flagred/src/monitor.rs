@@ -52,7 +52,8 @@ impl Unknown {
                     false => "its signal",
                 };
                 format!(
-                    "input `{name}` has {samples} samples in {window_s} s and needs {}: log {what} at {rate} Hz or more",
+                    "input `{name}` has {samples} sample{} in {window_s} s and needs {}: log {what} at {rate} Hz or more",
+                    if *samples == 1 { "" } else { "s" },
                     profile.sampling.min_samples
                 )
             }

@@ -61,7 +61,7 @@ impl PlanError {
             }
             PlanError::Type2 { .. } => {
                 "use `type_reduction: nie_tan` or `begian_melek_mendel` with operators that have a closed form, or \
-                 `weighted_average` of numbers, whose exact interval can be written"
+                 `weighted_average` of numbers; or remove the keys that make terms type-2, such as `blur` or `lower`"
             }
             PlanError::SeveralRisks { .. } => {
                 "write a profile for each risk, and run a monitor for each: the findings are the same"

@@ -94,6 +94,7 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
             .rev()
             .map(|o| (o.variable.name.as_str(), &o.variable))
             .collect(),
+        spans,
         unread: unread.collect(),
         findings: Vec::new(),
     };
@@ -226,6 +227,7 @@ fn too_large(model: &Model, spans: &Spans) -> Option<Diagnostic> {
 
 struct Validator<'m> {
     model: &'m Model,
+    spans: &'m Spans,
     inputs: BTreeMap<&'m str, &'m Variable>,
     outputs: BTreeMap<&'m str, &'m Variable>,
     /// The inputs and outputs whose terms could not be parsed.

@@ -114,6 +114,48 @@ fn a_cell_that_is_not_a_number_is_unknown_and_its_row_counts() {
 }
 
 #[test]
+fn header_lines_and_rows_in_another_notation_are_named() {
+    for (csv, said, help) in [
+        (
+            "vehicle: my quad\nt_s,motor1\n0,0.5\n",
+            "line 1: a header line begins with `#`",
+            "write `# vehicle: my quad`",
+        ),
+        (
+            "# pwm_low_us 1000\nt_s,pwm1\n0,1500\n",
+            "line 1: `pwm_low_us 1000` has no colon",
+            "write `# pwm_low_us: 1000`",
+        ),
+        (
+            "t_s,motor1,motor2\n0,00,0,5,0,5\n0,05,0,5,0,5\n",
+            "line 2: 6 cells, but the header has 3",
+            "a decimal point",
+        ),
+    ] {
+        refused(csv, said, help);
+    }
+    let utf_16: Vec<u8> = "\u{feff}t_s,motor1\n0,0.5\n"
+        .encode_utf16()
+        .flat_map(u16::to_le_bytes)
+        .collect();
+    let error = flagred_flightlog::read(utf_16.as_slice(), &Options::default()).unwrap_err();
+    assert_eq!(
+        (error.to_string().as_str(), error.help()),
+        (
+            "`the log` is text in UTF-16, not a flight log",
+            Some("save it as UTF-8")
+        )
+    );
+    // A colon in the name of a column is no header line, and an empty cell at the end of a row is none too many.
+    for csv in [
+        "a: b,t_s,motor1\n1,0,0.5\n",
+        "t_s,motor1,motor2,motor3\n0,0.5,0.5,0.5,\n",
+    ] {
+        assert!(read(csv).is_ok(), "{csv}");
+    }
+}
+
+#[test]
 fn a_row_with_too_few_cells_is_refused() {
     let short = |row: usize| {
         flight("", move |i, t_s| {
@@ -184,9 +226,16 @@ fn pulse_widths_in_another_unit_are_refused() {
             &said,
             "name columns of fractions from 0 to 1 `motor1`",
         );
-        // Without a range there is no verdict anyway, and `convert` writes files with such commands.
-        assert!(read(csv.strip_prefix(HEAD).unwrap()).is_ok());
+        // Without limits there is no verdict anyway; `convert` writes such commands. Fractions are named even then.
+        let without_limits = read(csv.strip_prefix(HEAD).unwrap());
+        assert_eq!(without_limits.is_err(), third == "0.52", "{third}");
     }
+    let negative = "t_s,motor1,motor2,motor3\n0,0.5,0,-0.2\n0.1,0.5,0,-0.3\n";
+    refused(
+        negative,
+        "line 2: `motor3` is -0.2, not a fraction from 0 to 1",
+        "1 the highest",
+    );
     // Pulses of 0 from outputs that are off and a single damaged cell are not refused.
     let csv = flight("", |i, t_s| match i {
         0..800 => Some(format!("{t_s},0,0,0,0,0")),

@@ -91,8 +91,17 @@ fn assignment(model: &Model, given: &[String], text: &str) -> Result<(String, f6
             let term = model.inputs.iter().find(|input| input.name == name.trim());
             let is_term =
                 term.is_some_and(|input| input.terms.iter().any(|term| term.name == value));
+            let number = value.strip_suffix([',', ';']);
             let advice = match is_term {
                 true => Some(format!("`{value}` is a term; write a number")),
+                false if number.is_some_and(|number| number.parse::<f64>().is_ok()) => {
+                    let words = given.iter().map(|word| word.trim_matches([',', ';', ' ']));
+                    let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
+                    Some(format!(
+                        "write spaces between the values: `{}`",
+                        words.join(" ")
+                    ))
+                }
                 false => value_advice(value),
             };
             Err(failure.help_if(advice))

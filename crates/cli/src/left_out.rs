@@ -10,6 +10,14 @@ use serde::Serialize;
 /// Maximum number of reasons for refused rows that are shown.
 const SHOWN: usize = 12;
 
+/// Formats a number of folds: `5 folds`.
+pub(crate) fn folds(count: usize) -> String {
+    match count {
+        1 => "1 fold".to_owned(),
+        count => format!("{count} folds"),
+    }
+}
+
 /// Writes how many rows were used, and why others were refused.
 pub(crate) fn rows(out: &mut dyn Write, used: usize, refused: &[String]) -> std::io::Result<()> {
     writeln!(out, "rows        {used} used, {} refused", refused.len())?;

@@ -75,12 +75,11 @@ fn real(text: &str, is_allowed: impl Fn(f64) -> bool, what: &str) -> Result<f64,
     let number = text.parse().ok();
     let number = number.filter(|number: &f64| number.is_finite() && is_allowed(*number));
     // Without this unit, the number would have another meaning.
-    let is_other_unit = ["%", "ms", "us", "min", "h"]
-        .iter()
-        .any(|unit| text.ends_with(unit));
-    number.ok_or_else(|| match number_advice(text).filter(|_| !is_other_unit) {
-        Some(advice) => format!("{what}; {advice}"),
-        None => what.to_owned(),
+    let other_unit = ["us", "min", "h"].iter().find(|unit| text.ends_with(*unit));
+    number.ok_or_else(|| match (number_advice(text), other_unit) {
+        (Some(_), Some(unit)) => format!("{what}, without `{unit}`, in the unit of the option"),
+        (Some(advice), None) => format!("{what}; {advice}"),
+        (None, _) => what.to_owned(),
     })
 }
 
@@ -105,6 +104,22 @@ mod tests {
             positive("5s").unwrap_err(),
             "write a number above 0; write the number without its unit: `5`"
         );
+        for (text, error) in [
+            (
+                "100ms",
+                "write a number above 0; write the number without its unit: `0.1` if it is in s, `100` if in ms",
+            ),
+            (
+                "1%",
+                "write a number above 0; write `1`, or `0.01` if the value is a share",
+            ),
+            (
+                "5min",
+                "write a number above 0, without `min`, in the unit of the option",
+            ),
+        ] {
+            assert_eq!(positive(text).unwrap_err(), error);
+        }
         assert!(degree_above_0("0").is_err() && positive("inf").is_err());
         assert_eq!(at_least_0("0"), Ok(0.0));
     }

@@ -52,13 +52,48 @@ pub(crate) fn missing(shown: &str) -> String {
                 .position(|ending| has_ending(Path::new(other), &[ending]))
                 .unwrap_or(RULES.len())
         });
-    let near = || nearest(&name, names.iter().map(String::as_str));
+    // Names are compared without their extensions, which make short names similar: those of files with the same
+    // extension by their letters, those of others only if they are the same.
+    let stem = |name: &str| {
+        let stem = Path::new(name).file_stem().unwrap_or_default();
+        stem.to_string_lossy().to_ascii_lowercase()
+    };
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    let is_same_kind =
+        |name: &&String| ending.is_none_or(|ending| has_ending(Path::new(name), &[ending]));
+    let near = || {
+        let same: Vec<(String, &String)> = names
+            .iter()
+            .filter(is_same_kind)
+            .map(|name| (stem(name), name))
+            .collect();
+        let wanted = stem(&name);
+        let nearest = nearest(&wanted, same.iter().map(|(stem, _)| stem.as_str()));
+        let near = same.iter().find(|(stem, _)| Some(stem.as_str()) == nearest);
+        let same_name = || names.iter().find(|other| stem(other) == wanted);
+        near.map(|(_, name)| *name)
+            .or_else(same_name)
+            .map(String::as_str)
+    };
     match same_stem.map(String::as_str).or_else(near) {
         Some(near) => format!("did you mean `{}`?", folder.join(near).display()),
-        None => CHECK.to_owned(),
+        None => {
+            let same = names
+                .iter()
+                .filter(|_| ending.is_some())
+                .filter(is_same_kind);
+            let same: Vec<String> = same.map(|name| format!("`{name}`")).collect();
+            match same.as_slice() {
+                [] => CHECK.to_owned(),
+                all if all.len() > MAX_LISTED => CHECK.to_owned(),
+                all => format!("{CHECK}; the folder has {}", all.join(", ")),
+            }
+        }
     }
 }
 
+/// The maximum number of files that are listed if none has a similar name.
+const MAX_LISTED: usize = 5;
 /// Advice for a file that does not exist and resembles no other.
 pub(crate) const CHECK: &str = "check the path";
 

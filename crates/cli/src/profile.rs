@@ -79,7 +79,11 @@ pub(crate) fn file_text(path: &Path) -> Result<String, Failure> {
     read_text(path).map_err(|failure| {
         failure.instead_of(CHECK, || {
             let names = shipped::profile_names().join(", ");
-            format!("built-in profiles are {names}")
+            let all = path.to_string_lossy();
+            match all.contains(',') && all.split(',').any(|name| is_shipped(name.trim())) {
+                true => "name one profile".to_owned(),
+                false => format!("built-in profiles are {names}"),
+            }
         })
     })
 }

@@ -3,6 +3,7 @@
 use flagred_flightlog::{Options, PulseRange};
 
 use crate::failure::Failure;
+use fuzzy::tree::number_advice;
 
 #[derive(clap::Args)]
 pub(crate) struct RangeArgument {
@@ -12,10 +13,20 @@ pub(crate) struct RangeArgument {
 }
 
 fn pulse_width(text: &str) -> Result<u16, String> {
-    let width = text.parse().ok();
-    width
-        .filter(|width| (500..=2500).contains(width))
-        .ok_or_else(|| "write microseconds from 500 to 2500, without decimals".into())
+    let is_width = |width: &u16| (500..=2500).contains(width);
+    if let Some(width) = text.parse().ok().filter(is_width) {
+        return Ok(width);
+    }
+    // For example `1100,1900` and `1100-1900`.
+    let parts = text.split([',', '-', ':', ';']).map(str::parse::<u16>);
+    let both: Vec<u16> = parts.flatten().filter(is_width).collect();
+    Err(match both.as_slice() {
+        [low, high] => format!("write two numbers: `--range {low} {high}`"),
+        _ if text.parse::<f64>().is_err() => number_advice(text).unwrap_or_else(|| {
+            "write two numbers of microseconds, such as `--range 1100 1900`".into()
+        }),
+        _ => "write microseconds from 500 to 2500, without decimals".into(),
+    })
 }
 
 impl RangeArgument {

@@ -76,7 +76,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             SimplifyError::TooManyRules { .. } => {
                 "learn it with fewer rules, such as with a higher `--min-support`, or split it by outputs"
             }
-            SimplifyError::Type2 => "remove the lower membership functions to simplify the rules",
+            SimplifyError::Type2 => "remove the keys that make terms type-2, such as `blur` or `lower`, to simplify the rules",
             _ => "`flagred check` shows what is wrong with the rule set",
         };
         Failure::unusable(format!("`{name}`"), &error).help(help)

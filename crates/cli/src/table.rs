@@ -277,11 +277,9 @@ impl Table {
                 return Err(Failure::unreadable(message).help("use fewer rows or columns"));
             }
             let line = record.position().map_or(0, csv::Position::line);
-            if let Some(misfit) = header.misfit(record.len(), record.get(0).map(str::as_bytes)) {
-                return Err(
-                    Failure::unreadable(format!("`{file}`, line {line}: {misfit}"))
-                        .help(header.misfit_help()),
-                );
+            if let Some((misfit, is_count)) = header.misfit(record.as_byte_record()) {
+                let failure = Failure::unreadable(format!("`{file}`, line {line}: {misfit}"));
+                return Err(failure.help_if(is_count.then(|| header.misfit_help())));
             }
             records.push((line, record.clone()));
         }

@@ -92,10 +92,11 @@ impl ReadError {
             Self::Empty { .. } => {
                 Some("the download or copy may have failed: download the log again")
             }
+            Self::NotRead { what, .. } if what != SDLOG2 => FileKind::named(what)?.help,
             Self::NotRead { .. } => Some(
                 "it cannot be converted to ULog: write a flight CSV (docs/flight-csv.md) of its OUT0 messages, or fly with PX4 1.4 or newer, which logs as ULog (.ulg)",
             ),
-            Self::NotALog { what, .. } => FileKind::named(what).and_then(|kind| kind.help).or(Some(
+            Self::NotALog { what, .. } => FileKind::named(what).and_then(FileKind::help_for_log).or(Some(
                 "flight logs are ArduPilot .bin and .log, PX4 .ulg, MAVLink .tlog and flight CSV, plain or gzipped",
             )),
             Self::Csv { help, .. } => Some(help),

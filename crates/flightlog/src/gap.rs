@@ -35,6 +35,9 @@ pub enum Gap {
         /// The source of the kind.
         from: String,
     },
+    /// The log ends after its head.
+    #[error("the log contains no messages")]
+    NoMessages,
     /// No output is known to drive a motor.
     #[error("the log does not record which outputs drive the motors")]
     NoMotors {
@@ -115,6 +118,7 @@ impl Gap {
         use Format::{Csv, DataFlash, DataFlashText, Tlog, ULog};
         Some(match self {
             Self::NotAMultirotor { .. } | Self::NoCommandsInAir | Self::NeverArmed => return None,
+            Self::NoMessages => "the download or copy may have failed: download the log again",
             Self::MotorsMissing { .. } => {
                 "log the outputs of all motors; in a flight CSV add the columns that are missing, or correct `frame` or `motors`"
             }
@@ -226,6 +230,9 @@ impl Flight {
             }];
         }
         let format = self.format;
+        if self.report.messages == 0 && format != Format::Csv {
+            return vec![Gap::NoMessages];
+        }
         let mut gaps = Vec::new();
         if self.motors.is_empty() {
             gaps.push(Gap::NoMotors { format });

@@ -20,12 +20,7 @@ const SIGNATURES: &[(&[u8], &[u8], &str, &str)] = &[
     (b"\x89PNG", b"", "a PNG picture", ""),
     (b"\xff\xd8\xff", b"", "a JPEG picture", ""),
     (b"GIF8", b"", "a GIF picture", ""),
-    (
-        b"%PDF",
-        b"",
-        "a PDF document",
-        "copy its content into a text file",
-    ),
+    (b"%PDF", b"", PDF, "copy its content into a text file"),
     (b"PK\x03\x04", b"xl/workbook", "an Excel file", AS_CSV),
     (b"PK\x03\x04", b"word/document", "a Word document", AS_TEXT),
     (
@@ -77,6 +72,12 @@ const SIGNATURES: &[(&[u8], &[u8], &str, &str)] = &[
     (b"MATLAB 5.0", b"", MAT, MAT_HELP),
     (b"\x89HDF", b"", MAT, MAT_HELP),
     (b"\x7fELF", b"", "a program", ""),
+    (
+        b"H Product:Blackbox",
+        b"",
+        BETAFLIGHT,
+        "convert it with `blackbox_decode`, and rename its columns as docs/flight-csv.md describes",
+    ),
     (b"<!DOCTYPE", b"", WEB_PAGE, ""),
     (b"<!doctype", b"", WEB_PAGE, ""),
     (b"<html", b"", WEB_PAGE, ""),
@@ -88,6 +89,8 @@ const SIGNATURES: &[(&[u8], &[u8], &str, &str)] = &[
     ),
 ];
 
+pub(crate) const BETAFLIGHT: &str = "a Betaflight log";
+const PDF: &str = "a PDF document";
 const WEB_PAGE: &str = "a web page";
 const POINTER: &str = "a git-lfs pointer";
 const MAT: &str = "a MAT or HDF5 file";
@@ -142,7 +145,7 @@ impl FileKind {
         name: "a list of parameters",
         help: Some("name the log of a flight, which contains the parameters"),
     };
-    const UTF_16: FileKind = FileKind {
+    pub(crate) const UTF_16: FileKind = FileKind {
         name: "text in UTF-16",
         help: Some("save it as UTF-8"),
     };
@@ -160,6 +163,12 @@ impl FileKind {
     /// Whether the content is text.
     pub fn is_text(self) -> bool {
         FileKind::PLAIN.contains(&self) || [WEB_PAGE, POINTER].contains(&self.name)
+    }
+
+    /// Advice for a file of this kind in place of a log.
+    pub(crate) fn help_for_log(self) -> Option<&'static str> {
+        // Text of a document is not a log.
+        self.help.filter(|_| self.name != PDF)
     }
 
     /// Returns the kind with the given name.
@@ -186,6 +195,11 @@ pub(crate) fn signed(start: &[u8]) -> Option<FileKind> {
     found.map(kind)
 }
 
+/// Whether a file begins with the mark of UTF-16.
+pub(crate) fn is_utf16(start: &[u8]) -> bool {
+    start.starts_with(b"\xff\xfe") || start.starts_with(b"\xfe\xff")
+}
+
 /// Whether a text lists parameters: each line has one name in capitals, and numbers.
 pub(crate) fn is_parameters(start: &[u8]) -> bool {
     let text = String::from_utf8_lossy(&start[..start.len().min(1024)]);
@@ -209,9 +223,6 @@ pub(crate) fn of_rest(start: &[u8]) -> FileKind {
     let is_utf8 =
         std::str::from_utf8(start).map_or_else(|error| error.error_len().is_none(), |_| true);
     let is_control = |byte: &u8| *byte < 0x20 && !byte.is_ascii_whitespace();
-    if start.starts_with(b"\xff\xfe") || start.starts_with(b"\xfe\xff") {
-        return FileKind::UTF_16;
-    }
     if !is_utf8 && start.iter().any(is_control) {
         return FileKind::BINARY;
     }

@@ -130,6 +130,12 @@ fn read_unpacked(input: &mut Input<'_>, options: &Options) -> Result<Flight, Rea
                 what: error::SDLOG2.into(),
             });
         }
+        Content::Other(kind) if kind.name == kind::BETAFLIGHT => {
+            return Err(ReadError::NotRead {
+                path: UNNAMED.into(),
+                what: kind.name.into(),
+            });
+        }
         Content::Other(kind) => {
             return Err(ReadError::NotALog {
                 path: UNNAMED.into(),
@@ -195,6 +201,9 @@ fn sniff(start: &[u8]) -> Content {
     }
     if let Some(kind) = kind::signed(start) {
         return Content::Other(kind);
+    }
+    if kind::is_utf16(start) {
+        return Content::Other(FileKind::UTF_16);
     }
     if dataflash::looks_like(start) {
         // PX4 before ULog used the same encoding with its own messages.

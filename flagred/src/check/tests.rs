@@ -134,6 +134,26 @@ fn misfits_are_reported_at_their_positions() {
         ("warn: {risk: 60, until: {risk: 30}}", "warn: {risk: 0.6}"),
         ("fail: {risk: 80}", "fail: {risk: 80, after_s: 200}"),
         ("rules: rules.yaml", "rules: rules.yaml\nwindow_s: 3000"),
+        (
+            "rules: rules.yaml",
+            "rules: rules.yaml\nlongest_gap_s: 2000\ntake_off_s: 300\nelevated_risk: {high: 0.5, low: 0.46}",
+        ),
+        (
+            "verdict:",
+            "verdict:\n  clear_after_s: 5000\n  quiet_after_take_off_s: 600",
+        ),
+        (
+            "{mean: motor_margin}",
+            "{mean: motor_margin, per: room, at_least: 2}\n  room: {mean: motor_command}",
+        ),
+        (
+            "risk IS high\n  - IF margin IS high AND battery IS full THEN risk IS low",
+            "risk IS high",
+        ),
+        (
+            "IF margin IS low OR battery IS empty THEN risk IS high\n  - IF margin IS high AND battery IS full THEN risk IS low",
+            "IF battery IS empty THEN risk IS high",
+        ),
     ];
     let shown: Vec<String> = cases
         .iter()

@@ -161,7 +161,7 @@ fn all_problems_of_a_model_are_reported_at_once() {
     error[wrong-parameter]: term `low` of input `x`: `sd` is -1, but must be greater than 0
       help: the positions of a membership function must ascend, its widths must be greater than 0, and its degrees in [0, 1]
     error[wrong-range]: the range of input `x` starts at 1 and ends at 1
-      help: write the minimum first, then the maximum
+      help: the maximum must be above the minimum
     error[value-outside-range]: the value 101 lies outside the range of output `y`
       help: write a value from 0 to 100
     error[weight-outside-range]: rule 1: the weight NaN is outside [0, 1]

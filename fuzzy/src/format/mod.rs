@@ -165,6 +165,10 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
         // In another version, all other keys may have a different meaning.
         return None;
     }
+    if let Some(finding) = outdented(&fields) {
+        findings.push(finding);
+        return None;
+    }
     findings.append(&mut unknown_keys);
     if let Some(finding) = outputs_among_inputs(&fields) {
         findings.push(finding);
@@ -251,6 +255,33 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
     spans.rules_key = key("blocks");
     blocks::read(node, &mut model, spans, findings);
     Some(model)
+}
+
+/// Returns a finding if an input or output is in the column of the keys of the rule set, not below `inputs` or `outputs`.
+fn outdented(fields: &Fields<'_>) -> Option<Diagnostic> {
+    let mut unknown = fields.unknown();
+    let stray = unknown.find(|entry| {
+        let has = |key: &str| entry.value.child(key).is_some();
+        has("range") && (has("partition") || has("terms") || has("steps"))
+    })?;
+    let above = fields
+        .entries()
+        .iter()
+        .take_while(|entry| entry.key != stray.key);
+    let section = above
+        .filter(|entry| ["inputs", "outputs"].contains(&entry.key))
+        .last()?;
+    let Value::Mapping(pairs) = &section.value.value else {
+        return None;
+    };
+    let (first, _) = pairs.first()?;
+    let kind = section.key.trim_end_matches('s');
+    let message = format!(
+        "the rule set has no key `{}`, which looks like an {kind}",
+        stray.key
+    );
+    let help = format!("indent `{}:` like `{}:`", stray.key, first.as_text()?);
+    Some(Diagnostic::error("unknown-key", stray.key_span.clone(), message).help(help))
 }
 
 /// Returns a finding if the outputs are below `inputs`, because `outputs:` is missing above them or both were exchanged.

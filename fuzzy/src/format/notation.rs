@@ -105,9 +105,12 @@ pub(super) fn other_terms(entries: &[Entry<'_>]) -> Option<String> {
     ))
 }
 
-/// Returns a suggestion for peaks such as `{cold:10, hot:35}` or `{cold=10, hot=35}`, which YAML reads as names.
+/// Returns a suggestion for peaks such as `{cold:10, hot: 35}` or `{cold=10, hot=35}`, which YAML reads as names.
 pub(super) fn colons_without_space(entries: &[Entry<'_>]) -> Option<String> {
     let peaks = entries.iter().map(|entry| {
+        if let Some(peak) = entry.value.as_number_text() {
+            return Some(format!("{}: {peak}", entry.key));
+        }
         let (name, peak) = entry.key.split_once([':', '='])?;
         peak.trim().parse::<f64>().ok()?;
         entry
@@ -116,7 +119,8 @@ pub(super) fn colons_without_space(entries: &[Entry<'_>]) -> Option<String> {
             .then(|| format!("{}: {}", name.trim(), peak.trim()))
     });
     let peaks: Vec<String> = peaks.collect::<Option<_>>()?;
-    (!peaks.is_empty()).then(|| format!("write `{{{}}}`", peaks.join(", ")))
+    let has_joined = entries.iter().any(|entry| entry.value.is_null());
+    has_joined.then(|| format!("write `{{{}}}`", peaks.join(", ")))
 }
 
 /// Returns the defuzzifier that fits the terms of a variable, for use in place of an unknown word.

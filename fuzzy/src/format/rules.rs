@@ -212,6 +212,8 @@ fn colon(what: &str, key: &Node, value: &Node) -> Option<Diagnostic> {
     } else if key.as_text().is_some_and(is_of_fis) {
         let help = "write it in words: `IF input IS term THEN output IS term`; a whole file in FIS can be imported";
         (format!("{what} consists of numbers, as in FIS"), help)
+    } else if let Some(help) = in_place_of_then(key, value).filter(|_| is_rule(key)) {
+        (format!("{what} contains a colon"), help)
     } else if is_rule(key) {
         let help = "put the rule in quotes, or write a remark after `#`";
         (format!("{what} contains a colon"), help)
@@ -222,6 +224,19 @@ fn colon(what: &str, key: &Node, value: &Node) -> Option<Diagnostic> {
         return None;
     };
     Some(Diagnostic::error("wrong-type", key.span.clone(), message).help(help))
+}
+
+/// Returns a suggestion for `IF x IS low: y IS high`.
+fn in_place_of_then(condition: &Node, conclusion: &Node) -> Option<&'static str> {
+    let has = |node: &Node, keyword: &str| {
+        let mut words = node.as_text()?.split_whitespace();
+        Some(words.any(|word| word.eq_ignore_ascii_case(keyword)))
+    };
+    match (has(condition, "THEN")?, has(conclusion, "THEN")?) {
+        (false, true) => Some("remove the colon"),
+        (false, false) if has(conclusion, "IS")? => Some("write `THEN` in place of the colon"),
+        _ => None,
+    }
 }
 
 /// Reads `{term: high, degree: 0.4, support: 3}`; also returns the positions of the term and the degree.

@@ -304,7 +304,11 @@ fn variable(
     variable.description = optional_text(fields, "description", findings);
     variable.unit = optional_text(fields, "unit", findings);
     let help = "write the minimum and the maximum: `range: [0, 1]`";
-    if let Some(node) = fields.require("range", help, findings)
+    if let Some(finding) = split_range(what, fields) {
+        // The second number is read as a key without a value.
+        findings.retain(|other| other.span.end != finding.span.end);
+        findings.push(finding);
+    } else if let Some(node) = fields.require("range", help, findings)
         && let Some((low, high)) = range(what, node, findings)
     {
         (variable.low, variable.high) = (low, high);
@@ -401,6 +405,22 @@ fn range(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<(f64
     let end = format!("the range of {what}");
     let (low, high) = (low.finite(&end, findings), high.finite(&end, findings));
     Some((low?, high?))
+}
+
+/// Returns a finding for a range without brackets in a mapping with braces, `range: 0, 40` or `range: (0, 40)`.
+fn split_range(what: &str, fields: &Fields<'_>) -> Option<Diagnostic> {
+    let mut entries = fields.entries().iter();
+    let range = entries.find(|entry| entry.key == "range")?;
+    let next = entries.next().filter(|entry| entry.value.is_null())?;
+    let low = range.value.as_text()?.trim_start_matches(['(', '[']);
+    let high = next.key.trim_end_matches([')', ']']);
+    let is_number = |text: &str| text.parse::<f64>().is_ok();
+    (is_number(low) && is_number(high)).then(|| {
+        let message = format!("the range of {what} is not a list of two numbers");
+        let span = range.value.span.start..next.key_span.end;
+        Diagnostic::error("wrong-type", span, message)
+            .help(format!("write `range: [{low}, {high}]`"))
+    })
 }
 
 /// Returns the numbers of a range in another notation: `0..40`, `0 - 40`, `{min: 0, max: 40}`.

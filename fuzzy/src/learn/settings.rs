@@ -184,7 +184,7 @@ impl LearnError {
                 "correct the rules of the outputs that the last output reads"
             }
             LearnError::Type2 => {
-                "remove the lower membership functions for learning, and add them again afterwards"
+                "remove the keys that make terms type-2, such as `blur` or `lower`, for learning, and add them again afterwards"
             }
             LearnError::Blocks => "remove `blocks`, and add blocks again after learning",
             LearnError::ReadsInputs { .. } => {

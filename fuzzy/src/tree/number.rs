@@ -34,9 +34,15 @@ pub fn percentage_advice(number: f64) -> Option<String> {
 /// Returns advice for a text that is not a number, but probably means one.
 #[must_use]
 pub fn number_advice(text: &str) -> Option<String> {
+    let ascii = text.trim_matches(|c: char| c.is_ascii_whitespace());
     let text = text.trim();
     if plain(text).is_some() {
-        return None;
+        return (ascii != text).then(|| format!("remove the no-break space: write `{text}`"));
+    }
+    if let Some(number) = text.strip_suffix([',', ';'])
+        && plain(number).is_some()
+    {
+        return Some(format!("write only the number: `{number}`"));
     }
     if let Some(share) = share_of_percentage(text) {
         let percent = text.trim_end_matches('%').trim();
@@ -171,11 +177,13 @@ mod tests {
             ("1O", "did you mean `10`, with digits in place of letters?"),
             ("0x10", "write decimal digits only: `16`"),
             ("2*3", "write the number, not a calculation: `6`"),
+            ("24,", "write only the number: `24`"),
+            ("5\u{a0}", "remove the no-break space: write `5`"),
         ] {
             assert_eq!(number_advice(text).as_deref(), Some(advice), "{text}");
         }
         for text in [
-            "50", "-1", "1e3", "2-3", "a,b", "much", "", "-", "1..2", ".",
+            "50", " 50 ", "-1", "1e3", "2-3", "a,b", "much", "", "-", "1..2", ".",
         ] {
             assert_eq!(number_advice(text), None, "{text}");
         }

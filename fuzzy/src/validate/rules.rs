@@ -224,14 +224,65 @@ impl<'m> Validator<'m> {
             finding.help = Some(format!("a rule names a term, not a number; {help}"));
         }
         // A term such as `very humid`, whose first word is parsed as a hedge.
+        let has_hedges = !hedges.is_empty();
         let hedges = hedges.iter().map(|hedge| hedge.word());
         let words: Vec<&str> = hedges.chain([term.text.as_str()]).collect();
         let whole = words.join(" ");
         let mut terms = variable.terms.iter();
-        if terms.any(|term| term.name.eq_ignore_ascii_case(&whole)) {
-            finding.help = Some(format!("put the name in quotes: `IS \"{whole}\"`"));
+        if let Some(known) = terms.find(|term| term.name.eq_ignore_ascii_case(&whole)) {
+            finding.help = Some(match has_hedges {
+                true => format!("put the name in quotes: `IS \"{}\"`", known.name),
+                false => format!("did you mean `{}`?", known.name),
+            });
+        } else if let Some(joined) = self.joined(kind, variable, &term.text) {
+            finding = joined.related(term.span.clone(), "named here");
+            self.unread.push(&variable.name);
         }
         self.findings.push(finding);
+    }
+}
+
+impl Validator<'_> {
+    /// Returns a finding if a name is one word of a term, as in `[slow medium, fast]` or `[slow 0, fast 9]`.
+    fn joined(&self, kind: &str, variable: &Variable, name: &str) -> Option<Diagnostic> {
+        let signs = [' ', ':', '='];
+        let is_part =
+            |term: &Term| term.name != name && term.name.split(signs).any(|word| word == name);
+        let index = variable.terms.iter().position(is_part)?;
+        let joined = &variable.terms.get(index)?.name;
+        let inputs = self.model.inputs.iter().zip(&self.spans.inputs);
+        let outputs = self.model.outputs.iter().map(|output| &output.variable);
+        let mut variables = inputs.chain(outputs.zip(&self.spans.outputs));
+        let spans = variables.find(|(known, _)| core::ptr::eq(*known, variable));
+        let span = spans.and_then(|(_, spans)| Some(spans.terms.get(index)?.name.clone()));
+        let message = format!(
+            "{kind} `{}` has a term `{joined}`, but no `{name}`",
+            variable.name
+        );
+        let peaks = variable.terms.iter().map(|term| {
+            let (name, peak) = term.name.rsplit_once(signs)?;
+            Some((name.trim_end_matches(signs), peak.parse::<f64>().ok()?))
+        });
+        // Names such as `stage 1` and `stage 2` are not names with peaks.
+        let is_distinct = |peaks: &Vec<(&str, f64)>| {
+            peaks
+                .iter()
+                .zip(peaks.iter().skip(1))
+                .all(|(a, b)| a.0 != b.0)
+        };
+        let peaks = peaks.collect::<Option<Vec<(&str, f64)>>>();
+        let help = match peaks.filter(is_distinct) {
+            Some(peaks) => {
+                let peaks = peaks.iter().map(|(name, peak)| format!("{name}: {peak}"));
+                let peaks: Vec<String> = peaks.collect();
+                format!("write peaks in braces: `{{{}}}`", peaks.join(", "))
+            }
+            None => format!(
+                "if these are several terms, write a comma between them: `{}`; if it is one term, name it in quotes: `IS \"{joined}\"`",
+                joined.split_whitespace().collect::<Vec<&str>>().join(", ")
+            ),
+        };
+        Some(Diagnostic::error("unknown-term", span.unwrap_or_default(), message).help(help))
     }
 }
 

@@ -139,7 +139,7 @@ impl Validator<'_> {
                 let message = format!(
                     "output `{name}` depends on type-2 terms, but its defuzzifier has no interval"
                 );
-                let help = "write `defuzzifier: centroid`, `weighted_average` or `weighted_sum`, or remove the lower membership functions";
+                let help = "write `defuzzifier: centroid`, `weighted_average` or `weighted_sum`, or remove the keys that make terms type-2, such as `blur` or `lower`";
                 self.error("unsupported-type-2", &spans.name, message, help);
             }
             if output.samples.is_some() {

@@ -76,7 +76,10 @@ impl Validator<'_> {
             self.error("wrong-range", here, message, "write two finite numbers");
         } else if low >= high {
             let message = format!("the range of {what} starts at {low} and ends at {high}");
-            let help = "write the minimum first, then the maximum";
+            let help = match variable.low == variable.high {
+                true => "the maximum must be above the minimum",
+                false => "write the minimum first, then the maximum",
+            };
             self.error("wrong-range", here, message, help);
         } else if !(2.0 * (high - low)).is_finite() {
             // Twice the width must be finite too, or distances within the range overflow.

@@ -1,8 +1,9 @@
-//! Reasons why a text is not YAML: an unresolved merge conflict, the format of another program, a Markdown fence,
-//! comments of another language, spaces that YAML does not allow, or a missing colon or space after a colon.
+//! Reasons why a text is not YAML: an unresolved merge conflict, marks of a program at the start of each line, comments of
+//! another language, spaces that YAML does not allow, an open quote, or a missing colon or space after a colon.
 
-use alloc::{format, string::String, vec::Vec};
+use alloc::{string::String, vec::Vec};
 
+use super::foreign::{foreign, lines};
 use crate::diagnostic::Diagnostic;
 
 /// Returns a finding if a text has an unresolved merge conflict, is in another format, is indented with spaces that YAML
@@ -17,7 +18,7 @@ pub(super) fn cause(text: &str) -> Option<Diagnostic> {
             "keep one of the two versions, and remove the lines `<<<<<<<`, `=======` and `>>>>>>>`";
         return syntax(start, line.len(), "a merge conflict is not resolved", help);
     }
-    if let Some(finding) = foreign(text) {
+    if let Some(finding) = foreign(text).or_else(|| marked(&lines)) {
         return Some(finding);
     }
     let is_blank = |c: char| c.is_whitespace() && c != ' ' && c != '\t' && c != '\r' && c != '\n';
@@ -50,94 +51,29 @@ pub(super) fn cause(text: &str) -> Option<Diagnostic> {
     )
 }
 
-/// Returns the start of each line after its indentation, and the line without white space around it.
-fn lines(text: &str) -> Vec<(usize, &str)> {
-    let mut at = 0;
-    let lines = text.split_inclusive('\n').map(|line| {
-        let blank = |c: char| c == '\u{feff}' || c.is_whitespace();
-        let start = at + line.len() - line.trim_start_matches(blank).len();
-        at += line.len();
-        (start, line.trim_matches(blank))
-    });
-    lines.collect()
-}
-
-/// Returns a finding if a text is recognised as another kind of file.
-pub(super) fn foreign(text: &str) -> Option<Diagnostic> {
-    let lines = lines(text);
-    let foreign = |(start, line): (usize, &str), message: String, help: &str| {
-        Some(Diagnostic::error("foreign-format", start..start + line.len(), message).help(help))
+/// Returns a finding if each line begins with `+`, as in a diff, or with its number, as in a listing.
+fn marked(lines: &[(usize, &str)]) -> Option<Diagnostic> {
+    let lines = lines.iter().filter(|(_, line)| !line.is_empty());
+    let lines: Vec<&(usize, &str)> = lines.collect();
+    let &&(start, _) = lines.first().filter(|_| lines.len() > 1)?;
+    let number = |line: &str| {
+        let end = line.find(|c: char| !c.is_ascii_digit())?;
+        let is_apart = line.get(end..)?.starts_with([' ', '\t', ':', '|', '.']);
+        line.get(..end)?.parse::<usize>().ok().filter(|_| is_apart)
     };
-    let comment = |line: &str| {
-        line.is_empty()
-            || ["#", "%", "//", "(*"]
-                .iter()
-                .any(|sign| line.starts_with(sign))
-    };
-    let mut content = lines.iter().filter(|(_, line)| !comment(line));
-    let &first = content.next()?;
-    if first.1.starts_with("```") {
-        let message = String::from("a Markdown fence surrounds the rule set");
-        let help = "remove the lines that begin with three backticks";
-        return foreign(first, message, help);
-    }
-    if first.1.starts_with("version https://git-lfs.") {
-        let message = String::from("this is a pointer of Git LFS, not the file itself");
-        return foreign(first, message, "fetch the file: `git lfs pull`");
-    }
-    if let Some((format, section)) = headless(&lines) {
-        let message = format!("this looks like {format} without its first section `{section}`");
-        return foreign(
-            first,
-            message,
-            "look for the lines that are missing at its start",
-        );
-    }
-    if let Some(program) = program(first.1) {
-        let message = format!("this is {program}, not a rule set in YAML");
-        let help = "write inputs, outputs and rules as YAML; a rule set begins with `fuzzy: 1`";
-        return foreign(first, message, help);
-    }
-    if is_table(first.1, content.next().map(|(_, line)| *line)) {
-        let message = String::from("this is a table of values, not a rule set");
-        return foreign(
-            first,
-            message,
-            "name a file with a rule set; a command that also reads a table takes it after the rule set",
-        );
-    }
-    None
-}
-
-/// Returns the format and the first section of a FIS or FLL file that lacks this section.
-fn headless(lines: &[(usize, &str)]) -> Option<(&'static str, &'static str)> {
-    let folded: Vec<String> = lines
-        .iter()
-        .map(|(_, line)| line.to_ascii_lowercase())
-        .collect();
-    let begins = |start: &str| folded.iter().any(|line| line.starts_with(start));
-    if begins("[input1]") && begins("[output1]") && !begins("[system]") {
-        Some(("FIS", "[System]"))
-    } else if begins("inputvariable:") && begins("outputvariable:") && !begins("engine:") {
-        Some(("FLL", "Engine:"))
+    let numbers: Option<Vec<usize>> = lines.iter().map(|(_, line)| number(line)).collect();
+    let is_numbered = numbers.is_some_and(|numbers| numbers.is_sorted_by(|a, b| a < b));
+    let (message, help) = if lines.iter().all(|(_, line)| line.starts_with('+')) {
+        (
+            "each line begins with `+`, as in a diff",
+            "remove the `+` at the start of each line",
+        )
+    } else if is_numbered {
+        ("each line begins with a number", "remove the line numbers")
     } else {
-        None
-    }
-}
-
-/// Returns whether the first two lines look like a table: not YAML, with the same number of cells, at least two.
-fn is_table(first: &str, second: Option<&str>) -> bool {
-    let cells = |line: &str, sign: char| line.split(sign).count();
-    let is_yaml = |line: &str| {
-        line.contains(": ") || line.ends_with(':') || line.starts_with(['{', '[', '-'])
+        return None;
     };
-    second.is_some_and(|second| {
-        !is_yaml(first)
-            && !is_yaml(second)
-            && [',', ';', '\t']
-                .into_iter()
-                .any(|sign| cells(first, sign) > 1 && cells(first, sign) == cells(second, sign))
-    })
+    Some(Diagnostic::error("yaml-syntax", start..start + 1, message).help(help))
 }
 
 /// Explains a syntax error by a key without a space after its colon, or without a colon, in the same line or in the
@@ -174,20 +110,103 @@ pub(super) fn line(text: &str, finding: &Diagnostic) -> Option<Diagnostic> {
     if let Some(finding) = indented_more(text, start) {
         return Some(finding);
     }
-    // For example `unit:°C` in the line above.
-    let above = before.get(..start)?.trim_end();
-    let at = above.rfind('\n').map_or(0, |at| at + 1);
-    let line = above.get(at..)?;
+    // For example `unit:°C` in the line above, or `name:fan` in this line.
+    if let Some(finding) = [above, start]
+        .into_iter()
+        .find_map(|at| no_space_behind_colon(text, at))
+    {
+        return Some(finding);
+    }
+    let is = |kind: &str| finding.message.contains(kind);
+    if is("simple key expected") {
+        return no_colon(text, start);
+    }
+    if is("mapping values") {
+        return no_key(text, above).filter(|_| above < start);
+    }
+    if is("after double-quoted") {
+        return open_quote(text, start);
+    }
+    None
+}
+
+/// Returns the line that starts at `start` without its indentation, and the position of its content.
+fn content_at(text: &str, start: usize) -> Option<(usize, &str)> {
+    let line = text.get(start..)?.lines().next()?;
     let content = line.trim_start();
+    Some((start + line.len() - content.len(), content.trim_end()))
+}
+
+/// Returns a finding for a line such as `unit:°C`. The message does not quote the text, which may be any file.
+fn no_space_behind_colon(text: &str, start: usize) -> Option<Diagnostic> {
+    let (at, content) = content_at(text, start)?;
     let (key, value) = content.split_once(':')?;
     if !is_key(key) || value.is_empty() || value.starts_with([' ', '/']) || value.contains(": ") {
         return None;
     }
-    let at = at + line.len() - content.len();
-    // The message does not quote the text, which may be any file.
-    let message = String::from("a space is missing after a colon");
+    let message = "a space is missing after a colon";
     let finding = Diagnostic::error("yaml-syntax", at..at + content.len(), message);
     Some(finding.help("write `key: value`"))
+}
+
+/// Returns a finding for a line such as `name fan` or `name = fan`.
+fn no_colon(text: &str, start: usize) -> Option<Diagnostic> {
+    let (at, content) = content_at(text, start)?;
+    let mut words = content.split([' ', '=']).filter(|word| !word.is_empty());
+    let is_pair =
+        words.next().is_some_and(is_key) && words.next().is_some() && words.next().is_none();
+    if !is_pair || content.contains(": ") {
+        return no_key(text, start);
+    }
+    let message = "a colon is missing after a key";
+    let finding = Diagnostic::error("yaml-syntax", at..at + content.len(), message);
+    Some(finding.help("write `key: value`, with a colon and a space"))
+}
+
+/// Returns a finding for a line of plain text in place of a key, such as a comment without its `#`.
+fn no_key(text: &str, start: usize) -> Option<Diagnostic> {
+    let (at, content) = content_at(text, start)?;
+    let is_plain = !content.is_empty()
+        && !content.contains(": ")
+        && !content.starts_with(['#', '-', '{', '[', '"', '\''])
+        && !content.ends_with([':', ',', '{', '[', '|', '>']);
+    // A text or a rule may continue on this line.
+    let above = text.get(..start)?.trim_end();
+    let above = above.get(above.rfind('\n').map_or(0, |at| at + 1)..)?;
+    let is_indented_more = at - start > above.len() - above.trim_start().len();
+    let continues = is_indented_more && !above.is_empty() && !above.ends_with(':');
+    let first = content.split(' ').next().unwrap_or("");
+    let is_of_rule = ["IF", "AND", "OR", "THEN", "WITH"]
+        .iter()
+        .any(|word| word.eq_ignore_ascii_case(first));
+    (is_plain && !continues && !is_of_rule).then(|| {
+        let message = "the line is plain text, without a key";
+        let finding = Diagnostic::error("yaml-syntax", at..at + content.len(), message);
+        finding.help("a comment begins with `#`; a value comes after its key: `key: value`")
+    })
+}
+
+/// Returns a finding for a double quote that is not closed in its line; the quote of a later line, at `start`, closes it.
+fn open_quote(text: &str, start: usize) -> Option<Diagnostic> {
+    let mut at = 0;
+    let mut open = None;
+    for line in text.get(..start)?.split_inclusive('\n') {
+        let code = line.split(" #").next().unwrap_or(line);
+        let quotes = code.match_indices('"');
+        let quotes =
+            quotes.filter(|(quote, _)| !code.get(..*quote).is_some_and(|c| c.ends_with('\\')));
+        let quotes: Vec<(usize, &str)> = quotes.collect();
+        if quotes.len() % 2 == 1 {
+            open = match open {
+                None => quotes.last().map(|(quote, _)| at + quote),
+                Some(_) => None,
+            };
+        }
+        at += line.len();
+    }
+    let message = "the quote is not closed in its line";
+    let finding = open.map(|at| Diagnostic::error("yaml-syntax", at..at + 1, message));
+    finding.map(|finding| finding.help("add the closing quote"))
 }
 
 /// Returns a finding if the line that starts at `start` is indented less than the first line of its mapping.
@@ -279,45 +298,4 @@ pub(super) fn comment(text: &str, finding: &mut Diagnostic) {
     {
         help.push_str("; `#` begins a comment");
     }
-}
-
-/// Returns the format of a text that starts with this line.
-fn program(first: &str) -> Option<&'static str> {
-    let folded = first.to_ascii_lowercase();
-    let begins = |starts: &[&str]| starts.iter().any(|start| folded.starts_with(start));
-    if begins(&["[system]"]) {
-        Some("a FIS file of MATLAB")
-    } else if begins(&["function_block"]) {
-        Some("a text in the Fuzzy Control Language (FCL)")
-    } else if begins(&["engine:"]) {
-        Some("a text in the FuzzyLite Language (FLL)")
-    } else if begins(&["<"]) {
-        Some("XML")
-    } else if begins(&["import ", "from "]) {
-        Some("Python")
-    } else if ["mamfis", "sugfis", "newfis", "readfis"]
-        .iter()
-        .any(|call| folded.contains(call))
-    {
-        Some("a script of MATLAB")
-    } else if is_toml(first) {
-        Some("TOML")
-    } else {
-        None
-    }
-}
-
-/// Returns whether a line is `[section]` or `key = value` in TOML.
-fn is_toml(line: &str) -> bool {
-    let is_name = |name: &str| {
-        !name.is_empty()
-            && name
-                .chars()
-                .all(|c| c.is_ascii_alphanumeric() || "_-.".contains(c))
-    };
-    let section = line
-        .strip_prefix('[')
-        .and_then(|line| line.strip_suffix(']'));
-    let key = line.split_once(" = ").map(|(key, _)| key);
-    section.or(key).is_some_and(is_name)
 }

@@ -18,6 +18,7 @@ use crate::{
 };
 
 mod cause;
+mod foreign;
 #[cfg(test)]
 mod tests;
 mod write;
@@ -59,7 +60,7 @@ pub fn read(text: &str) -> Result<Node, Findings> {
 #[doc(hidden)] // For the programs of this repository.
 #[must_use]
 pub fn foreign(text: &str) -> Option<Diagnostic> {
-    cause::foreign(text)
+    foreign::foreign(text)
 }
 
 /// Parses a rule set in YAML.

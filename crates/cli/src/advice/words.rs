@@ -238,6 +238,11 @@ pub(super) const OPTIONS: &[(&str, &str, &str)] = &[
         "`new` writes a commented example: edit its inputs and outputs",
     ),
     (
+        "watch",
+        "--baud --baudrate --baud-rate --speed -b",
+        "the baud rate follows the serial port: `/dev/ttyUSB0:VALUE`",
+    ),
+    (
         "check",
         "--fix --write",
         "`check` changes no file; `flagred fmt` formats one",

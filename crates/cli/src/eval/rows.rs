@@ -110,8 +110,10 @@ impl<'p> Evaluator<'p> {
         for (row, (record, outcomes)) in records.iter().zip(outcomes).enumerate() {
             let line = record.position().map_or(0, csv::Position::line);
             let problem = self.problems.get(row).and_then(Option::as_deref);
-            let is_comment = record.get(0).is_some_and(|first| first.starts_with(b"#"));
-            tally.has_misfit |= record.len() != plan.header.names.len() && !is_comment;
+            tally.has_misfit |= plan
+                .header
+                .misfit(record)
+                .is_some_and(|(_, is_count)| is_count);
             match problem {
                 Some(problem) => {
                     tally.add_bad(line, problem);
@@ -131,9 +133,9 @@ impl<'p> Evaluator<'p> {
     /// Reads the inputs of a row, and returns the problem with it, if any. Unknown inputs, and all inputs of a bad row, are NaN.
     fn read(&mut self, record: &ByteRecord) -> Option<String> {
         let header = &self.plan.header;
-        let misfit = header.misfit(record.len(), record.get(0));
+        let misfit = header.misfit(record);
         let is_whole = misfit.is_none();
-        let mut problems: Vec<String> = misfit.into_iter().collect();
+        let mut problems: Vec<String> = misfit.into_iter().map(|(problem, _)| problem).collect();
         for (values, column) in self.columns.iter_mut().zip(&self.plan.inputs) {
             // If a row has the wrong number of cells, its cells may be in the wrong columns.
             let text = match is_whole {

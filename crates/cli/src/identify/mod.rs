@@ -149,6 +149,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if let Some(Ok(first)) = tables.peek() {
         has_numbers(arguments, first)?;
     }
+    if let ([], [word, ..]) = (names.as_slice(), without_numbers.as_slice()) {
+        let message = format!("no column beside `{}` contains numbers", arguments.target);
+        let help =
+            format!("inputs are numbers, and `{word}` contains text: add columns with numbers");
+        return Err(Failure::unreadable(message).help(help));
+    }
     let failed = |error: TuneError| failure(arguments, &names, &error);
     check_columns(names.len()).map_err(failed)?;
     let (data, refused) = data(arguments, tables, &names)?;

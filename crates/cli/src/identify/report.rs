@@ -106,9 +106,9 @@ fn worth(
     let parts = divided(arguments.group_by.as_ref());
     writeln!(
         out,
-        "left out    {} cross-validation error (RMS) of the whole search ({} folds of {parts}, 95 % intervals)",
+        "left out    {} cross-validation error (RMS) of the whole search ({} of {parts}, 95 % intervals)",
         figure(&validation.identified),
-        validation.folds
+        left_out::folds(validation.folds)
     )?;
     let ratio = match validation.ratio {
         ratio if ratio.value < 100.0 => format!("the first is {} of it", figure(&ratio)),

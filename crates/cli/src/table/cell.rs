@@ -13,6 +13,24 @@ pub(crate) enum Cell {
     Bad,
 }
 
+/// Texts of other programs for an unknown value.
+const UNKNOWN: [&str; 14] = [
+    "null",
+    "none",
+    "nil",
+    "na",
+    "n/a",
+    "n.a.",
+    "-",
+    "--",
+    "?",
+    "unknown",
+    "missing",
+    "undefined",
+    "invalid",
+    "<NA>",
+];
+
 impl Cell {
     pub(crate) fn of(text: &[u8]) -> Cell {
         let text = text.trim_ascii();
@@ -35,6 +53,11 @@ impl Cell {
         match text.parse::<f64>() {
             Ok(_) => format!("`{shown}` is not a finite number"),
             Err(_) if text.is_empty() => "the cell is empty".to_owned(),
+            Err(_) if UNKNOWN.iter().any(|word| text.eq_ignore_ascii_case(word)) => {
+                format!(
+                    "`{shown}` is not a number: if the value is unknown, leave the cell empty or write `NA`"
+                )
+            }
             Err(_) => match number_advice(&text) {
                 Some(advice) => format!("`{shown}` is not a number: {advice}"),
                 None => format!("`{shown}` is not a number"),
@@ -81,6 +104,14 @@ mod tests {
                 "`15.48 %` is not a number: write `15.48`, or `0.1548` if the value is a share",
             ),
             ("2-3", "`2-3` is not a number"),
+            (
+                "null",
+                "`null` is not a number: if the value is unknown, leave the cell empty or write `NA`",
+            ),
+            (
+                "n/a",
+                "`n/a` is not a number: if the value is unknown, leave the cell empty or write `NA`",
+            ),
             ("a,b", "`a,b` is not a number"),
             (" much ", "`much` is not a number"),
         ] {

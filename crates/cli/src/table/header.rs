@@ -51,6 +51,15 @@ impl Header {
                 let column = quoted(column);
                 return failure.help(format!("did you mean `{column}`? then add `--column {name}={column}`"));
             }
+            // For example `temperature,5,24,35`.
+            let is_number = |name: &String| name.parse::<f64>().is_ok();
+            if let [first, values @ ..] = self.names.as_slice()
+                && !is_number(first)
+                && !values.is_empty()
+                && values.iter().all(is_number)
+            {
+                return failure.help("a row is one point: write the names in the first line, and the values of each point in a line of their own");
+            }
             if let [only] = self.names.as_slice()
                 && only.contains(' ')
             {
@@ -93,17 +102,27 @@ impl Header {
         }
     }
 
-    /// Returns the problem of a row with `cells` cells, if any; `first` is the first one.
-    pub(crate) fn misfit(&self, cells: usize, first: Option<&[u8]>) -> Option<String> {
-        let expected = self.names.len();
+    /// Returns the problem of a row that does not fit the header, if any, and whether [`misfit_help`](Self::misfit_help)
+    /// applies.
+    pub(crate) fn misfit(&self, record: &csv::ByteRecord) -> Option<(String, bool)> {
+        let (cells, expected) = (record.len(), self.names.len());
+        let first = record.get(0);
+        if cells != expected && record.iter().any(|cell| cell.contains(&b'\n')) {
+            let problem = "the quote is never closed, so the lines after it are read as one cell";
+            return Some((problem.to_owned(), false));
+        }
         let is_comment = cells < expected && first.is_some_and(|first| first.starts_with(b"#"));
         if is_comment {
-            return Some("comments are allowed only above the header".to_owned());
+            return Some((
+                "comments are allowed only above the header".to_owned(),
+                false,
+            ));
         }
         (cells != expected).then(|| {
-            format!(
-                "{cells} cell{}, but the header has {expected}",
-                if cells == 1 { "" } else { "s" }
+            let plural = if cells == 1 { "" } else { "s" };
+            (
+                format!("{cells} cell{plural}, but the header has {expected}"),
+                true,
             )
         })
     }

@@ -361,7 +361,9 @@ fn resumed(
 fn failure(name: &str, model: &Model, error: &TuneError) -> Failure {
     let help = match error {
         TuneError::Outputs { .. } => "keep one of these outputs, and the outputs that it reads",
-        TuneError::Type2 => "remove the lower membership functions for tuning",
+        TuneError::Type2 => {
+            "remove the keys that make terms type-2, such as `blur` or `lower`, for tuning"
+        }
         TuneError::Unknown { .. } => "name a variable, or a term as `variable.term`",
         TuneError::NothingMoves => {
             "`--only` and `--fix` leave nothing to tune; `--rule-weights` tunes the weights of rules"

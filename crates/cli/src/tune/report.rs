@@ -102,11 +102,11 @@ pub(super) fn words(
         let parts = divided(arguments.rows.group_by.as_ref());
         writeln!(
             out,
-            "left out    {} before, {} after; gain {} ({} folds of {parts}, 95 % intervals)",
+            "left out    {} before, {} after; gain {} ({} of {parts}, 95 % intervals)",
             figure(&validation.before),
             figure(&validation.after),
             figure(&validation.gain),
-            validation.folds
+            left_out::folds(validation.folds)
         )?;
         for (i, bin) in validation.reliability.iter().enumerate() {
             let (title, said) = match i {

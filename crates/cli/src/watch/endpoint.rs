@@ -42,10 +42,19 @@ impl FromStr for Endpoint {
             let port = text.rsplit_once(':').map(|(_, port)| port.parse::<u16>());
             return match (port, text.matches(':').count()) {
                 (Some(Ok(_)), 2..) => Ok(endpoint),
+                (Some(Ok(port)), _) if text.starts_with("udpin:") || text.starts_with("tcpin:") => {
+                    let (kind, _) = text.split_once(':').unwrap_or_default();
+                    Err(format!(
+                        "to listen on a port, write `{kind}:0.0.0.0:{port}`"
+                    ))
+                }
                 _ => Err(format!(
                     "`{text}` has no address with a port from 0 to 65535, such as `127.0.0.1:14550`"
                 )),
             };
+        }
+        if std::path::Path::new(text).is_file() {
+            return Err(format!("`{text}` is a file: `flagred assess {text}`"));
         }
         let (path, baud) = match text.rsplit_once(':') {
             Some((path, baud)) => {
@@ -60,10 +69,7 @@ impl FromStr for Endpoint {
                 baud,
             });
         }
-        match std::path::Path::new(text).is_file() {
-            true => Err(format!("`{text}` is a file: `flagred assess {text}`")),
-            false => Err(unknown(text)),
-        }
+        Err(unknown(text))
     }
 }
 

@@ -46,6 +46,7 @@ use session::{Event, Session, SessionOutput, UntrustedCounts};
 
 /// The default component id: the first one reserved for onboard computers.
 const COMPONENT: u8 = 191;
+const KEY_HELP: &str = "`--key` names a file with the key: 32 bytes, or 64 hexadecimal digits";
 /// Maximum number of bytes read of a key file: digits and some white space.
 const KEY_FILE: u64 = 256;
 /// The largest possible datagram.
@@ -263,11 +264,11 @@ fn read_key(path: &Path) -> Result<Key, Failure> {
     let mut bytes = Vec::new();
     File::open(path)
         .and_then(|file| file.take(KEY_FILE).read_to_end(&mut bytes))
-        .map_err(|error| Failure::unreadable(format!("`{name}` cannot be read: {error}")))?;
-    Key::from_bytes(&bytes).ok_or_else(|| {
-        Failure::unreadable(format!("`{name}` is not a key"))
-            .help("a key is 32 bytes, or 64 hexadecimal digits")
-    })
+        .map_err(|error| {
+            Failure::unreadable(format!("`{name}` cannot be read: {error}")).help(KEY_HELP)
+        })?;
+    Key::from_bytes(&bytes)
+        .ok_or_else(|| Failure::unreadable(format!("`{name}` is not a key")).help(KEY_HELP))
 }
 
 /// Counts of packets that were skipped, doubted or not sent.

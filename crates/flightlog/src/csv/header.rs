@@ -57,8 +57,10 @@ pub(super) fn read_header(input: &mut Input<'_>) -> Result<(Vec<HeaderLine>, u64
         lines += 1;
         let text = String::from_utf8_lossy(&text);
         let text = text.trim().trim_start_matches('#').trim();
-        // A known key with `=` instead of a colon is an error, because its value would silently be ignored.
-        if let Some((key, value)) = text.split_once('=')
+        // A known key with `=` or a space instead of a colon is an error, because its value would silently be ignored.
+        let number = |value: &str| value.trim().parse::<f64>().is_ok();
+        let by_space = || text.split_once(' ').filter(|(_, value)| number(value));
+        if let Some((key, value)) = text.split_once('=').or_else(by_space)
             && KEYS.contains(&key.trim())
         {
             let help = format!("write `# {}: {}`", key.trim(), value.trim());
@@ -79,8 +81,14 @@ pub(super) fn entry_without_sign(text: &[u8]) -> Option<(String, String)> {
     let line = text.split(|byte| *byte == b'\n').next()?;
     let line = String::from_utf8_lossy(line.strip_prefix(BOM).unwrap_or(line));
     let (key, value) = line.split_once([':', '='])?;
+    let is_word = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+    // Other keys are allowed too, but a colon may also be a part of the name of a column.
+    let is_entry = !key.is_empty()
+        && key.chars().all(is_word)
+        && value.starts_with(' ')
+        && !value.contains(',');
     let is_known = KEYS.contains(&key.trim());
-    is_known.then(|| (key.trim().to_owned(), value.trim().to_owned()))
+    (is_known || is_entry).then(|| (key.trim().to_owned(), value.trim().to_owned()))
 }
 
 /// The value of `written_by` in the files that this crate writes.

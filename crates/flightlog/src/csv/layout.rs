@@ -23,6 +23,8 @@ pub(super) struct Layout {
     pub(super) signals: Vec<(usize, String, bool)>,
     /// The number of columns that a row must have.
     pub(super) columns: usize,
+    /// The number of cells of the header.
+    pub(super) cells: usize,
 }
 
 impl Layout {
@@ -117,6 +119,7 @@ impl Layout {
                 .iter()
                 .rposition(|name| !name.is_empty())
                 .map_or(0, |last| last + 1),
+            cells: names.len(),
             time,
             motors,
             stem,

@@ -149,8 +149,10 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> Result<Flight, R
     flight.series = preferred(vec![rows.series]);
     let declared = apply_header(&mut flight, header, &layout, span_s)?;
     flight.range = options.range_or_given(flight.range);
-    // Without a known range, the unit of the commands is unknown, so they are not refused.
-    if let Some(refused) = other_unit.filter(|_| flight.range.is_some()) {
+    // Without limits the meaning of the commands is unknown, except for fractions.
+    if let Some((raw, refused)) = other_unit
+        && (flight.range.is_some() || (0.0..=1.0).contains(&raw))
+    {
         return Err(refused);
     }
     flight.geometry = geometry::find(&flight, &declared);

@@ -11,7 +11,12 @@ use crate::{Commands, Intervals, ReadError, Report, Series};
 
 /// Fractions that are outside 0 to 1 by at most this are rounding errors or slightly exceeded limits.
 const MAX_OUTSIDE: f64 = 0.5;
+/// A motor whose fractions are mostly below 0 by more than this has another scale.
+const MAX_BELOW: f64 = 0.1;
 const HELP_FRACTIONS: &str = "name columns of pulse widths in us `pwm1`.. and add the limits; divide percent by 100; for DShot see docs/flight-csv.md";
+const HELP_NEGATIVE: &str =
+    "commands are fractions from 0 to 1: 0 is the lowest command, 1 the highest";
+const HELP_LONG: &str = "write numbers with a decimal point, since a comma separates cells, and as many cells in every row as in the header";
 const HELP_SHORT: &str = "give every row a cell for each column, empty where the value is unknown";
 /// The largest accepted distance of a time from 0, in seconds. Any 64-bit count of microseconds is within it after
 /// conversion to seconds. If a single damaged time beyond this limit were accepted, all later times would seem to go
@@ -49,17 +54,19 @@ pub(super) struct RowCollector {
     repeated: usize,
     /// The line and the time of the first of these rows.
     first_repeated: Option<(u64, f64)>,
-    /// Counts for each column of pulse widths.
-    pulses: Vec<Pulses>,
+    /// Counts for each motor.
+    counts: Vec<CommandCounts>,
+    /// `pwm` or `motor`.
+    stem: &'static str,
     /// The error of the first unusable cell.
     refused: Option<ReadError>,
 }
 
-/// Counts of the cells of a column of pulse widths that are neither empty nor 0.
+/// Counts of the cells of a column of commands that are neither empty nor 0.
 #[derive(Clone, Default)]
-struct Pulses {
+struct CommandCounts {
     known: usize,
-    /// The number of cells that are not a pulse width in us.
+    /// The number of cells that are not a pulse width in us, or that are negative fractions.
     outside: usize,
     /// The line and the value of the first of these cells.
     first: Option<(u64, f64)>,
@@ -92,14 +99,8 @@ impl RowCollector {
             first_step: None,
             repeated: 0,
             first_repeated: None,
-            pulses: vec![
-                Pulses::default();
-                if layout.stem == "pwm" {
-                    layout.motors.len()
-                } else {
-                    0
-                }
-            ],
+            counts: vec![CommandCounts::default(); layout.motors.len()],
+            stem: layout.stem,
             refused: None,
         }
     }
@@ -146,6 +147,18 @@ impl RowCollector {
     ) -> Result<(), String> {
         if record.len() < layout.columns {
             return Err(format!("{} of {} columns", record.len(), layout.columns));
+        }
+        let has_more = record
+            .iter()
+            .skip(layout.cells)
+            .any(|bytes| !cell(bytes).is_empty());
+        if has_more && self.first_s.is_infinite() {
+            let text = format!(
+                "{} cells, but the header has {}",
+                record.len(),
+                layout.cells
+            );
+            self.refuse(line, text, HELP_LONG);
         }
         let t_s = self.time(layout, record, line)?;
         if t_s.abs() > FURTHEST_S {
@@ -273,15 +286,19 @@ impl RowCollector {
             let text = format!("`motor{number}` is {command}, not a fraction from 0 to 1");
             self.refuse(line, text, HELP_FRACTIONS);
         }
-        for (pulses, &raw) in self.pulses.iter_mut().zip(commands) {
+        let is_outside = |raw: f64| match layout.stem {
+            "pwm" => !(PULSES_US.least..=LONGEST_PULSE_US).contains(&raw),
+            _ => raw < -MAX_BELOW,
+        };
+        for (counts, &raw) in self.counts.iter_mut().zip(commands) {
             // 0 is the output for a motor that is off.
             if raw.is_nan() || raw == 0.0 {
                 continue;
             }
-            pulses.known += 1;
-            if !(PULSES_US.least..=LONGEST_PULSE_US).contains(&raw) {
-                pulses.outside += 1;
-                pulses.first.get_or_insert((line, raw));
+            counts.known += 1;
+            if is_outside(raw) {
+                counts.outside += 1;
+                counts.first.get_or_insert((line, raw));
             }
         }
     }

@@ -3,7 +3,7 @@
 use alloc::{format, string::String, vec::Vec};
 
 use fuzzy::{
-    diagnostic::Diagnostic,
+    diagnostic::{Diagnostic, nearest},
     tree::{Entry, Fields, Node},
 };
 
@@ -33,9 +33,16 @@ pub(super) fn findings(
         if found.is_empty() && !inputs.iter().any(|input| input.name == entry.key) {
             let message = format!("the profile has no input `{}`", entry.key);
             let names: Vec<&str> = inputs.iter().map(|input| input.name.as_str()).collect();
+            let help = match nearest(entry.key, names.iter().copied()) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => format!(
+                    "its inputs are {}; if the rule set has an input `{name}`, add it to `inputs`: `{name}: {{mean: SIGNAL}}`; if not, remove these texts",
+                    names.join(", "),
+                    name = entry.key
+                ),
+            };
             found.push(
-                Diagnostic::error("unknown-input", entry.key_span.clone(), message)
-                    .help(format!("its inputs are {}", names.join(", "))),
+                Diagnostic::error("unknown-input", entry.key_span.clone(), message).help(help),
             );
         }
         all.extend(words(&entry, found));

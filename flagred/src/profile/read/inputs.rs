@@ -126,6 +126,16 @@ fn input(
         {
             finding.help = Some(format!("write `{{percentile: {percent}, of: {signal}}}`"));
         }
+        // For example `{motor: 1, of: motor_margin}`.
+        if entry.key == "motor"
+            && let Some(number) = entry.value.as_number_text()
+            && let Some(of) = fields.get("of").and_then(Node::as_text)
+            && let Some(finding) = found.iter_mut().find(|one| one.span == entry.key_span)
+        {
+            finding.help = Some(format!(
+                "write a statistic of the motor: `{{mean: {{motor: {number}, of: {of}}}}}`"
+            ));
+        }
         // For example `{std, motor_margin}`.
         let empty = fields.entries().iter().find(|other| {
             other.value.is_null() && other.key != entry.key && keys.contains(&other.key)

@@ -369,6 +369,27 @@ inputs:
 }
 
 #[test]
+fn words_in_place_of_numbers_and_missing_sources_are_reported() {
+    let found = |replaced: &str, by: &str| {
+        let text = format!(
+            "{START}verdict: {{warn: {{risk: 60}}}}\nfindings:\n  margin: {{code: a, brief: a, text: a, advice: a}}\n"
+        );
+        let text = text.replace(replaced, by);
+        text.parse::<Profile>().unwrap_err().to_string()
+    };
+    insta::assert_snapshot!(
+        [
+            ("risk: 60", "risk: high"),
+            ("  margin: {code", "  spread: {code"),
+            ("  margin: {code", "  margn: {code"),
+            ("{mean: motor_margin}", "{motor: 1, of: motor_command}"),
+        ]
+        .map(|(replaced, by)| found(replaced, by))
+        .join("\n")
+    );
+}
+
+#[test]
 fn mistakes_in_words_and_reliability_are_reported() {
     let text = "flagred: 1
 name: wrong

@@ -130,6 +130,12 @@ fn threshold(fields: &Fields, what: &str, found: &mut Mistakes) -> Threshold {
                 percent.trim()
             ));
         }
+        let is_word = value.is_none() && percent.is_none();
+        if let Some(finding) = found.get_mut(before).filter(|_| is_word)
+            && finding.help.as_deref() == Some("write a number such as `0.5`")
+        {
+            finding.help = Some(format!("write the risk in percent, such as `{key}: 60`"));
+        }
         let value = value?;
         if !(0.0..=100.0).contains(&value) {
             let message = format!("{what}: `{key}` is a percentage, not {value}");

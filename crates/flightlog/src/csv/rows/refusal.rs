@@ -1,6 +1,6 @@
 //! Reasons why the rows of a flight CSV are refused as a whole: other units, other clocks, a wrong order.
 
-use super::{RowCollector, problem};
+use super::{HELP_NEGATIVE, RowCollector, problem};
 use crate::ReadError;
 
 const HELP_PULSES: &str = "name columns of fractions from 0 to 1 `motor1`..; divide percent by 100 first; for DShot see docs/flight-csv.md";
@@ -36,14 +36,18 @@ impl RowCollector {
         refused.or_else(|| backwards.or_else(of_clock).filter(|_| !is_ours))
     }
 
-    /// An error for a column whose cells are mostly not pulse widths: if it were accepted, the motor would seem to be
-    /// at a limit all the time. A few such cells count as damage.
-    pub(in crate::csv) fn other_unit(&self) -> Option<ReadError> {
-        let mut columns = (1..).zip(&self.pulses);
-        let (number, pulses) = columns.find(|(_, pulses)| pulses.outside > pulses.known / 2)?;
-        let (line, raw) = pulses.first?;
-        let text = format!("`pwm{number}` is {raw}, not a pulse width in us");
-        Some(problem(line, text, HELP_PULSES))
+    /// An error for a column whose cells are mostly not pulse widths, or mostly negative fractions: if it were accepted, the
+    /// motor would seem to be at a limit all the time. A few such cells count as damage. Also returns the first such cell.
+    pub(in crate::csv) fn other_unit(&self) -> Option<(f64, ReadError)> {
+        let mut columns = (1..).zip(&self.counts);
+        let (number, counts) = columns.find(|(_, counts)| counts.outside > counts.known / 2)?;
+        let (line, raw) = counts.first?;
+        let (what, help) = match self.stem {
+            "pwm" => ("a pulse width in us", HELP_PULSES),
+            _ => ("a fraction from 0 to 1", HELP_NEGATIVE),
+        };
+        let text = format!("`{}{number}` is {raw}, not {what}", self.stem);
+        Some((raw, problem(line, text, help)))
     }
 
     /// An error for times that look like milliseconds or microseconds: whole numbers, with most steps between motor

@@ -1,0 +1,100 @@
+//! Suggestions for the text after a conclusion, and for weights.
+
+use alloc::{format, string::String};
+
+use super::words::found_here;
+use crate::{rule::is_plain_name, tree::share_of_percentage};
+
+/// Returns a suggestion for a weight such as `50%` or `weight 0.5`.
+pub(super) fn weight_advice(rest: &str) -> String {
+    let rest = rest.trim_start_matches(['=', ':', ' ']);
+    let mut words = rest.split_whitespace();
+    let first = words.next().unwrap_or("");
+    if first
+        .parse::<f64>()
+        .is_ok_and(|weight| (0.0..=1.0).contains(&weight))
+    {
+        return format!("write `WITH {first}`");
+    }
+    let share = share_of_percentage(first);
+    let named = words
+        .next()
+        .filter(|_| first.eq_ignore_ascii_case("weight"));
+    match (share, named.filter(|number| number.parse::<f64>().is_ok())) {
+        (Some(share), _) => format!("write `WITH {share}`"),
+        (_, Some(number)) => format!("write `WITH {number}`"),
+        _ => "a weight is a number from 0 to 1: `WITH 0.8`".into(),
+    }
+}
+
+/// Returns a suggestion for text after a conclusion or after its weight.
+pub(super) fn behind_conclusion(before: &str, rest: &str, weighted: bool) -> Option<String> {
+    let found = found_here(rest);
+    let number_behind = |sign: &str| {
+        let number = rest.strip_prefix(sign)?.split_whitespace().next()?;
+        number.parse::<f64>().ok().map(|value| (number, value))
+    };
+    if let Some((number, value)) = number_behind("*")
+        && (0.0..=1.0).contains(&value)
+    {
+        return Some(format!("write a weight after `WITH`: `WITH {number}`"));
+    }
+    if let Some((_, divisor)) = number_behind("/")
+        && let Some(Ok(number)) = before.split_whitespace().next_back().map(str::parse::<f64>)
+        && (0.0..=1.0).contains(&(number / divisor))
+    {
+        return Some(format!(
+            "write a weight as a decimal number: `WITH {}`",
+            number / divisor
+        ));
+    }
+    let is = |word: &str| found.eq_ignore_ascii_case(word);
+    if is("else") {
+        return Some("there is no `ELSE`: write a second rule with `NOT`".into());
+    }
+    if is("or") {
+        return Some("conclusions are joined by `AND`; for `OR` write two rules".into());
+    }
+    if is("if") {
+        return Some("begin the next rule on a line of its own: `- IF ...`".into());
+    }
+    if is("when") {
+        return Some("a rule has one `IF`: join conditions by `AND` before `THEN`".into());
+    }
+    if is("then") {
+        return Some("join conclusions by `AND`, or write a second rule".into());
+    }
+    if is("unless") || is("except") {
+        return Some("there is no `UNLESS`: write `AND NOT (condition)` before `THEN`".into());
+    }
+    if ["weight", "weighted", "weights", "confidence", "cf"]
+        .iter()
+        .any(|word| is(word))
+    {
+        let mut words = rest.split_whitespace().skip(1);
+        let number = words
+            .find(|word| word.parse::<f64>().is_ok())
+            .unwrap_or("0.5");
+        return Some(format!("write a weight after `WITH`: `WITH {number}`"));
+    }
+    let number = rest.trim_start_matches([',', '(', '[', ' ']);
+    let end = number.find(|c: char| !c.is_ascii_digit() && c != '.');
+    let number = number.get(..end.unwrap_or(number.len())).unwrap_or("");
+    let whole = before.split_whitespace().next_back().unwrap_or("");
+    if rest.starts_with(',') && !number.is_empty() && whole.parse::<u64>().is_ok() {
+        return Some(format!("write a decimal point: `WITH {whole}.{number}`"));
+    }
+    match found {
+        "," => Some("join conclusions by `AND`".into()),
+        ";" => Some("remove it; each rule is an item of the list `rules`".into()),
+        "(" | "[" if number.parse::<f64>().is_ok() => {
+            Some(format!("write a weight after `WITH`: `WITH {number}`"))
+        }
+        "(" | "%" | "[" => Some("write a weight after `WITH`: `WITH 0.8`".into()),
+        _ if weighted => Some("a weight is the end of its rule; remove everything after it".into()),
+        _ if is_plain_name(found) => {
+            Some("put a name of several words in quotes: `\"very low\"`".into())
+        }
+        _ => None,
+    }
+}
