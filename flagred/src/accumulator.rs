@@ -108,6 +108,11 @@ fn share_below(x: f64, mean: f64, std: f64) -> f64 {
     }
 }
 
+state! {
+    struct Accumulator { settings, elevated_pct, last }
+    struct AccumulatorSettings { window_s, high_pct, low_pct, rise_pct_per_s, fall_pct_per_s }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

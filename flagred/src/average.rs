@@ -26,3 +26,5 @@ impl Average {
         (self.known_s >= least_s).then_some(self.value)
     }
 }
+
+state! { struct Average { value, known_s } }

@@ -119,3 +119,5 @@ pub(crate) fn is_of_limits(
             )
     })
 }
+
+state! { struct Cause { rule, input, value, proposition } }

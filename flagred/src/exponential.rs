@@ -75,6 +75,8 @@ impl Exponential {
     }
 }
 
+state! { struct Exponential { constant_s, now_s, samples, moments } }
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -8,6 +8,7 @@ use crate::{
     monitor::{Craft, Monitor, MonitorError, Sample, Unknown, Update},
     motor::counted,
     profile::Profile,
+    state::{self, Reader, State},
     verdict::{EndedFindings, Level, Measure},
 };
 
@@ -16,6 +17,8 @@ pub use assessment::{Assessment, AssumedInput, Peak, Step, Summary};
 
 mod finding;
 pub use finding::{Cause, Finding};
+
+pub use crate::state::StateError;
 
 mod loss;
 use loss::Losses;
@@ -262,6 +265,59 @@ impl Assessor {
         flight.assessment(known_in_air_s, self.monitor.estimator().profile())
     }
 
+    /// The state after the latest sample as bytes, with the findings and steps so far: see [`Assessor::restore`].
+    ///
+    /// # Example: the second half of a flight in another process
+    /// ```
+    /// use flagred::{flight::Assessor, monitor::{Craft, Sample}, shipped};
+    ///
+    /// let hover = |assessor: &mut Assessor, from: u32| {
+    ///     for i in from..from + 500 {
+    ///         assessor.push(&Sample { t_s: f64::from(i) * 0.02, motors: &[0.5; 4], in_air: Some(true), signals: &[] });
+    ///     }
+    /// };
+    /// let estimator = shipped::flagred();
+    /// let mut one = Assessor::new(&estimator, Craft::new(4), Some(0.5))?;
+    /// hover(&mut one, 0);
+    /// let state = one.state();
+    /// let mut other = Assessor::new(&estimator, Craft::new(4), None)?.restore(&state)?;
+    /// hover(&mut one, 500);
+    /// hover(&mut other, 500);
+    /// assert_eq!(one.finish(), other.finish());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn state(&self) -> Vec<u8> {
+        let mut bytes = state::begin(&self.monitor.description());
+        self.monitor.save(&mut bytes);
+        ((self.step_s, self.has_intervals), self.known_in_air_s).save(&mut bytes);
+        self.flight.save(&mut bytes);
+        self.ended_before.save(&mut bytes);
+        state::end(&mut bytes);
+        bytes
+    }
+
+    /// Sets the state of a new assessor of the same estimator and craft. It then continues the flight with the same bits as
+    /// the assessor that [`Assessor::state`] was called on.
+    ///
+    /// # Errors
+    ///
+    /// If the bytes are damaged, have the layout of another version, or belong to another profile, rule set or craft.
+    pub fn restore(mut self, state: &[u8]) -> Result<Assessor, StateError> {
+        let mut from = state::open(state, &self.monitor.description())?;
+        self.load(&mut from)
+            .filter(|()| from.is_empty())
+            .ok_or(StateError::OtherMonitor)?;
+        Ok(self)
+    }
+
+    fn load(&mut self, from: &mut Reader<'_>) -> Option<()> {
+        self.monitor.load(from)?;
+        ((self.step_s, self.has_intervals), self.known_in_air_s) = State::load(from)?;
+        self.flight = State::load(from)?;
+        self.ended_before = State::load(from)?;
+        Some(())
+    }
+
     fn keep_step(&mut self, update: &Update) {
         let (Some(step_s), flight) = (self.step_s, &mut self.flight) else {
             return;
@@ -293,6 +349,7 @@ impl Assessor {
             spread: self.monitor.spread(),
             judged: update.judged,
             inputs: self.monitor.inputs().to_vec(),
+            other_risks_pct: self.monitor.other_risks_pct().collect(),
         });
     }
 }
@@ -497,6 +554,11 @@ impl Flight {
             findings_left_out: self.findings_left_out,
             summary,
             inputs: profile.inputs.iter().map(|i| i.name.clone()).collect(),
+            other_risks: profile
+                .other_risks
+                .iter()
+                .map(|risk| risk.output.clone())
+                .collect(),
             assumed_inputs: AssumedInput::of(&self.assumed, profile),
             unknown_risk: longest(&self.unknown).map(|(unknown, _)| unknown.explain(profile)),
             steps: self.steps,
@@ -548,6 +610,15 @@ impl Flight {
 /// The reason that applied for the longest time.
 fn longest(unknown: &[(Unknown, f64)]) -> Option<&(Unknown, f64)> {
     unknown.iter().max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+state! {
+    struct Flight {
+        findings, findings_left_out, steps, uncertain, peaks, next_step_s, widened_step_s, last, summary, judged_s,
+        risk_times_s, motor_samples, saturated, unknown, losses, assumed, pending
+    }
+    struct PreviousSample { t_s, in_air }
+    struct Pending { t_s, held_s, risk_times_s, risk_pct, elevated_risk_pct }
 }
 
 #[cfg(test)]

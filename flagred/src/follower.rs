@@ -516,6 +516,16 @@ pub(crate) fn reading(
     }
 }
 
+state! {
+    struct Follower {
+        settings, sum, alert, notices, bin, last_s, in_air_since_s, settled, down_since_s, idle, lifted_s, falls, last_high_s,
+        last_known_s, in_doubt_s
+    }
+    struct Settings { sampling, elevated_risk, verdict }
+}
+
+state! { enum Idle { 0 = Landing {}, 1 = InTrouble {} } }
+
 #[cfg(test)]
 #[cfg(feature = "std")]
 mod tests;

@@ -59,6 +59,14 @@
 #[cfg(feature = "std")]
 extern crate alloc;
 
+#[cfg(feature = "std")]
+#[macro_use]
+mod state;
+#[cfg(not(feature = "std"))]
+macro_rules! state {
+    ($($all:tt)*) => {};
+}
+
 pub mod accumulator;
 mod average;
 pub mod board;

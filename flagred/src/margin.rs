@@ -114,6 +114,8 @@ impl Side {
     }
 }
 
+state! { enum Side { 0 = Lower {}, 1 = Upper {} } }
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -198,6 +198,8 @@ impl Moments {
     }
 }
 
+state! { struct Moments { weight, mean, squares, steps, min, max } }
+
 #[cfg(test)]
 mod tests {
     use super::*;

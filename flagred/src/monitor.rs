@@ -11,6 +11,7 @@ use crate::{
     motor::{Motor, set_geometry},
     profile::Profile,
     source::{Motors, Signal, Source, Statistic},
+    state::{Reader, State},
     verdict::{EndedFindings, Finding, Level},
     window::Window,
 };
@@ -128,6 +129,8 @@ pub struct Monitor {
     ended_elsewhere: Vec<RiskFinding>,
     /// The reason why the risk of this monitor is unknown after the latest sample; the other risks are not considered.
     unknown: Option<Unknown>,
+    /// The risk of this monitor after the latest sample in %; NaN is unknown.
+    risk_pct: f64,
 }
 
 /// A finding about another risk of the profile.
@@ -209,6 +212,7 @@ impl Monitor {
         Ok(Monitor {
             ended_elsewhere: Vec::with_capacity(others.len()),
             unknown: None,
+            risk_pct: f64::NAN,
             others,
             memory: Memory::of(estimator),
             room: OwnedBuffers {
@@ -280,6 +284,7 @@ impl Monitor {
             estimator.cause(&room.inputs, risk_pct, memory)
         });
         self.unknown = update.risk.err();
+        self.risk_pct = update.risk.map_or(f64::NAN, |estimate| estimate.risk_pct);
         update
     }
 
@@ -372,6 +377,11 @@ impl Monitor {
         self.others.iter().filter_map(|other| other.unknown)
     }
 
+    /// The other risks after the latest sample in %, in the order of [`Profile::other_risks`]; NaN is unknown.
+    pub fn other_risks_pct(&self) -> impl Iterator<Item = f64> {
+        self.others.iter().map(|other| other.risk_pct)
+    }
+
     /// The worst open finding that is not about the risk, with its values so far: little reserve or an imbalance. A
     /// risk may be the cause of the level at the same time.
     pub fn open_notice(&self) -> Option<Finding> {
@@ -387,6 +397,42 @@ impl Monitor {
                 .extend(found.map(|found| RiskFinding { risk, found }));
         }
         self.follower.finish(&mut self.room.borrowed())
+    }
+
+    /// A text that differs between monitors whose states are not interchangeable.
+    pub(crate) fn description(&self) -> String {
+        let (profile, model) = (self.estimator.profile(), self.estimator.model());
+        format!(
+            "{profile:?} {model:?} {:?} {:?}",
+            self.channels, self.inputs
+        )
+    }
+
+    pub(crate) fn save(&self, to: &mut Vec<u8>) {
+        (self.room).save(to);
+        self.follower.save(to);
+        self.unknown.save(to);
+        self.risk_pct.save(to);
+        self.ended_elsewhere.save(to);
+        self.others.iter().for_each(|other| other.save(to));
+    }
+
+    /// Sets the state of a monitor that was created like the one that saved it; `None` if it does not fit.
+    pub(crate) fn load(&mut self, from: &mut Reader<'_>) -> Option<()> {
+        let room = OwnedBuffers::load(from)?;
+        let lengths = |of: &OwnedBuffers| (of.seen.len(), of.inputs.len(), of.motors.len());
+        if lengths(&room) != lengths(&self.room) {
+            return None;
+        }
+        self.room = room;
+        self.follower = Follower::load(from)?;
+        self.unknown = State::load(from)?;
+        self.risk_pct = State::load(from)?;
+        self.ended_elsewhere.clear();
+        self.ended_elsewhere.extend(Vec::<RiskFinding>::load(from)?);
+        self.others
+            .iter_mut()
+            .try_for_each(|other| other.load(from))
     }
 
     /// The mean margin over all motors and the profile's window, with any rule set: the paper's first input.
@@ -421,6 +467,11 @@ impl OwnedBuffers {
             motors: &mut self.motors,
         }
     }
+}
+
+state! {
+    struct RiskFinding { risk, found }
+    struct OwnedBuffers { risks, seen, inputs, motors }
 }
 
 #[cfg(test)]

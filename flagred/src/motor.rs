@@ -293,3 +293,11 @@ impl Bin {
         noise
     }
 }
+
+state! {
+    struct Motor {
+        command, less_yaw, yaw, share, opposite, bin_sum, bin_before, difference, trim, at_zero_s, record
+    }
+    struct MotorRecord { samples, margin_mean, margin_min, side }
+    struct Bin { index, samples }
+}

@@ -202,3 +202,15 @@ impl RiskFields {
         }
     }
 }
+
+state! {
+    struct Estimate { risk_pct, coverage, filled_from, dominant_rule, clamped }
+    struct Sampling { min_samples, warm_up_s, longest_gap_s, take_off_s }
+}
+
+state! {
+    enum Unknown {
+        0 = OnGround {}, 1 = OutOfOrder {}, 2 = WarmingUp { input }, 3 = TooFewSamples { input, samples },
+        4 = NoValue { input }, 5 = NoRule {}, 6 = NoCommand { motor }, 7 = CommandOutside { motor, command }
+    }
+}

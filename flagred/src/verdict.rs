@@ -333,3 +333,26 @@ impl Finding {
 
 /// The findings that end at one time: of the risk, the noise, the reserve and the balance.
 pub type EndedFindings = [Option<Finding>; 4];
+
+state! {
+    struct Finding {
+        severity, from_s, raised_s, failed_s, to_s, measure, threshold_pct, value_pct, motor, cause
+    }
+    struct MotorFinding { number, or_number, side, margin_mean, margin_min }
+    struct Threshold { risk_pct, elevated_risk_pct }
+    struct LevelSettings { raise, after_s, until }
+    struct Limit { value, after_s }
+    struct NoticeSettings { noise, reserve, imbalance }
+    struct VerdictSettings {
+        warn, fail, clear_after_s, quiet_after_take_off_s, quiet_before_landing_s, idle_below, notices
+    }
+}
+
+state! { enum Level { 0 = Good {}, 1 = Info {}, 2 = Warn {}, 3 = Fail {} } }
+
+state! {
+    enum Measure {
+        0 = Risk {}, 1 = ElevatedRisk {}, 2 = CommandNoise {}, 3 = Reserve {}, 4 = Imbalance {},
+        5 = PairImbalance {}, 6 = WeakMotor {}, 7 = IdleInAir {}
+    }
+}

@@ -5,6 +5,8 @@
 //! the window.
 
 use crate::moments::Moments;
+#[cfg(feature = "std")]
+use crate::state::State;
 
 mod slots;
 
@@ -235,6 +237,35 @@ impl Window {
     /// The index in the ring of the i-th oldest slot.
     fn place(&self, i: usize) -> usize {
         (self.oldest + i) % self.slots.len()
+    }
+}
+
+state! { struct Slot { index, start_s, end_s, samples, moments, and_later } }
+
+/// Only the slots in use are saved; the oldest becomes the first of the ring.
+#[cfg(feature = "std")]
+impl crate::state::State for Window {
+    fn save(&self, to: &mut alloc::vec::Vec<u8>) {
+        let slots = (0..self.len).map(|i| self.slots[self.place(i)]);
+        slots.collect::<alloc::vec::Vec<Slot>>().save(to);
+        let counts = (self.samples, self.front);
+        ((self.length_s, self.now_s), (counts, self.back)).save(to);
+    }
+
+    fn load(from: &mut crate::state::Reader<'_>) -> Option<Window> {
+        let used = alloc::vec::Vec::<Slot>::load(from)?;
+        let ((length_s, now_s), ((samples, front), back)) = State::load(from)?;
+        let mut window = Window {
+            length_s,
+            now_s,
+            len: used.len(),
+            samples,
+            front,
+            back,
+            ..Window::IDLE
+        };
+        window.slots.get_mut(..used.len())?.copy_from_slice(&used);
+        (front <= used.len()).then_some(window)
     }
 }
 

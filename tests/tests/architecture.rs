@@ -237,7 +237,9 @@ fn one_folder_names_the_yaml_library_and_one_package_the_bytes_of_logs() {
             let bytes = ["from_le_bytes", "from_be_bytes"]
                 .iter()
                 .any(|f| text.contains(f));
-            assert!(!bytes || name.starts_with("crates/flightlog/"), "{name}");
+            // The state of a flight in progress is not a log.
+            let may = name.starts_with("crates/flightlog/") || name == "flagred/src/state.rs";
+            assert!(!bytes || may, "{name}");
         }
     }
 }

@@ -297,6 +297,73 @@ fn an_empty_battery_determines_the_risk_of_the_shipped_profile() {
 }
 
 #[test]
+fn another_risk_is_in_the_steps_and_a_line_of_the_chart() {
+    let folder = Folder::new();
+    // The battery is unknown from 30 s to 35 s, then nearly empty.
+    let log = folder.file(
+        "flight.csv",
+        hover(|t_s| match t_s {
+            ..30.0 => Some(90.0),
+            30.0..35.0 => None,
+            _ => Some(14.0),
+        }),
+    );
+    let steps = |profile: &str| {
+        let (_, document, _) = run(&["assess", "--json", "--profile", profile, &log]);
+        let document: Value = serde_json::from_str(&document).unwrap();
+        document["steps"].as_array().unwrap().clone()
+    };
+    let (two, one) = (steps("flagred-battery"), steps("flagred"));
+    assert_eq!(two.len(), one.len());
+    for (two, one) in two.iter().zip(&one) {
+        let other = &two["other_risks"]["battery_risk"];
+        let t_s = two["t_s"].as_f64().unwrap();
+        match t_s {
+            ..29.9 => assert_eq!(other, 0.0, "{t_s}"),
+            30.1..34.9 => assert!(other.is_null(), "{t_s}: {other}"),
+            36.0.. => assert!(other.as_f64().unwrap() > 60.0, "{t_s}: {other}"),
+            _ => {}
+        }
+        assert_eq!(two["risk"], one["risk"], "{t_s}");
+        assert!(one.get("other_risks").is_none());
+    }
+
+    let (_, table, _) = run(&["assess", "--csv", "--profile", "flagred-battery", &log]);
+    let column = |row: &str| row.rsplit(',').next().unwrap().to_owned();
+    let rows: Vec<String> = table.lines().map(column).collect();
+    assert_eq!(rows[0], "other_risk_battery_risk");
+    for (cell, step) in rows[1..].iter().zip(&two) {
+        let known = step["other_risks"]["battery_risk"].as_f64();
+        assert_eq!(cell.parse().ok(), known, "{step}");
+    }
+
+    let file = folder.at("report.html");
+    run(&[
+        "assess",
+        "--html",
+        &file,
+        "--profile",
+        "flagred-battery",
+        &log,
+    ]);
+    let page = fs::read_to_string(file).unwrap();
+    assert!(page.contains("<span class=\"key value\">battery risk "));
+    let (_, line) = page.split_once("<path class=\"line value\" d=\"").unwrap();
+    let (line, _) = line.split_once('"').unwrap();
+    let highest = two
+        .iter()
+        .filter_map(|step| step["other_risks"]["battery_risk"].as_f64());
+    let highest = highest.fold(0.0, f64::max);
+    let drawn = line
+        .split(['M', 'L'])
+        .filter_map(|point| point.trim_end_matches("h0").split_once(' '));
+    let drawn = drawn.map(|(_, risk)| risk.parse::<f64>().unwrap());
+    assert!((drawn.fold(0.0, f64::max) - highest).abs() <= 0.051);
+    // The line is interrupted while the battery is unknown.
+    assert_eq!(line.matches('M').count(), 2);
+}
+
+#[test]
 fn each_risk_needs_only_the_inputs_that_its_rules_read() {
     let folder = Folder::new();
     let assess = |log: String| {

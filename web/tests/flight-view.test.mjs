@@ -58,7 +58,7 @@ for (const [device, options, most_px] of [
 test('the highest risk is one number', async () => {
   const { page, context } = await withLogs([GUST]);
   const words = await inReport(page, (root) => root.querySelector('[data-part=head]').textContent + root.querySelector('[data-part=about]').textContent);
-  const numbers = [...words.matchAll(/risk reached (\d+) %|Highest risk(\d+) %/g)].map(([, a, b]) => a ?? b);
+  const numbers = [...words.matchAll(/risk reached (\d+) %|Highest risk(\d+)\s%/g)].map(([, a, b]) => a ?? b);
   assert.ok(numbers.length === 2, words);
   assert.equal(numbers[0], numbers[1]);
   await context.close();

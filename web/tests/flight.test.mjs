@@ -68,7 +68,7 @@ test('a cursor shows the values of all charts and the rules that fire', async ()
     const { risk, elevated_risk, inputs, dominant_rule } = step(t_s);
     assert.ok(Math.abs(parseFloat(values['Risk'][1]) - risk) < 1.5, `risk ${values['Risk'][1]} is not ${risk}`);
     assert.ok(Math.abs(parseFloat(values['Risk'][0]) - elevated_risk) < 1.5);
-    assert.ok(Math.abs(parseFloat(values['swing_per_room'][0]) - inputs.swing_per_room) < 0.01);
+    assert.ok(Math.abs(parseFloat(values['swing per room'][0]) - inputs.swing_per_room) < 0.01);
     const dominant = await page.locator('.fired .dominant .rule b').textContent();
     assert.equal(Number(dominant), dominant_rule);
     const strengths = await page.locator('.fired .strength').allTextContents();

@@ -216,6 +216,15 @@ pub(crate) fn steps(assessed: &Assessment) -> PyResult<Table> {
     for (i, name) in inputs.iter().enumerate() {
         columns.push((name, "", number(&|step| step.inputs.get(i).copied())));
     }
+    let others: Vec<String> = assessed
+        .other_risks
+        .iter()
+        .map(|name| format!("other_risk_{name}"))
+        .collect();
+    for (i, name) in others.iter().enumerate() {
+        let values = number(&|step| step.other_risks_pct.get(i).copied());
+        columns.push((name, "%", values));
+    }
     let fields = columns.iter().map(|(name, unit, values)| {
         let field = Field::new(*name, values.data_type().clone(), *name != "t_s");
         field.with_metadata([("unit".to_owned(), (*unit).to_owned())].into())

@@ -1,6 +1,9 @@
 //! A monitor that follows a flight sample by sample.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::{
+    borrow::Cow,
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
+};
 
 use flagred::{
     flight::Assessor,
@@ -172,6 +175,22 @@ impl MonitorData {
             .map(|f| FindingDocument::new(f, self.teller()))
             .collect();
         json!(ended).to_string()
+    }
+
+    /// The number of motors and the state of the flight as bytes, as they are pickled; None without a sample.
+    fn _state(&self) -> Option<(usize, Cow<'static, [u8]>)> {
+        let state = self.state();
+        let state = state.as_ref()?;
+        Some((state.motors, Cow::Owned(state.assessor.state())))
+    }
+
+    /// Continues the flight of another monitor.
+    fn _restore(&self, motors: usize, bytes: &[u8]) -> PyResult<()> {
+        let MonitorState { assessor, motors } = self.begin(motors)?;
+        let assessor = assessor.restore(bytes);
+        let assessor = assessor.map_err(|error| data_error(error, None))?;
+        *self.state() = Some(MonitorState { assessor, motors });
+        Ok(())
     }
 
     /// Ends the flight and returns its assessment in JSON, and its steps; None without a sample.

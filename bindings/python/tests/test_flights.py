@@ -288,18 +288,44 @@ def test_a_table_is_pickled():
     assert pyarrow.table(steps)["dominant_rule"].null_count > 0
 
 
-def test_a_monitor_is_pickled_before_a_flight_and_refuses_during_one():
-    monitor = flagred.Monitor("flagred-paper", step_s=0.5)
-    other = pickle.loads(pickle.dumps(monitor))
-    for i in range(600):
-        update = [one.push(i * 0.04, [0.0, 1.0, 0.05, 1.0]) for one in (monitor, other)]
-        assert repr(update[0]) == repr(update[1])
-    with pytest.raises(TypeError, match="during a flight\n  help: pickle what `finish"):
-        pickle.dumps(monitor)
-    ended, again = monitor.finish(), other.finish()
+@given(st.sets(st.integers(0, 899), max_size=4), st.integers(0, 1000))
+@settings(max_examples=10, deadline=None)
+def test_a_monitor_is_pickled_at_any_time(moments, seed):
+    random = np.random.default_rng(seed)
+    profile = flagred.Profile("flagred-battery")
+    signals = ["battery_remaining_pct"]
+    one, other = (flagred.Monitor(profile, signals=signals, step_s=0.1) for _ in range(2))
+    for i in range(900):
+        if i in moments:
+            other = pickle.loads(pickle.dumps(other))
+        spread = 0.02 if i < 500 else 0.5
+        commands = (0.5 + random.uniform(-spread, spread, 4)).tolist()
+        battery = {"battery_remaining_pct": None if i % 90 == 0 else 100 - i / 10}
+        updates = [monitor.push(i * 0.04, commands, in_air=True, signals=battery) for monitor in (one, other)]
+        assert repr(updates[0]) == repr(updates[1]) and updates[0].risk == updates[1].risk
+        assert one.ended() == other.ended()
+    assert pickle.dumps(one) == pickle.dumps(other)
+    ended, again = one.finish(), other.finish()
+    assert ended[:4] == again[:4] and len(ended.steps) > 0
+    for name in ended.steps:
+        assert np.array_equal(ended.steps[name], again.steps[name], equal_nan=True)
     carried = pickle.loads(pickle.dumps(ended))
-    assert carried[:4] == ended[:4] == again[:4] and len(carried.steps) == len(ended.steps) > 0
-    assert type(pickle.loads(pickle.dumps(monitor))) is flagred.Monitor
+    assert carried[:4] == ended[:4] and len(carried.steps) == len(ended.steps)
+    assert pickle.loads(pickle.dumps(one)).finish() is None
+
+
+def test_a_pickle_of_another_version_is_refused():
+    monitor = flagred.Monitor("flagred-paper")
+    monitor.push(0.0, [0.5] * 4)
+    rebuild, (*made_of, (motors, state)) = monitor.__reduce__()
+    version = len(b"flagred state ")
+    newer = state[:version] + b"\xff" + state[version + 1 :]
+    with pytest.raises(flagred.DataError, match="the state has version 255, but this version of flagred reads version"):
+        rebuild(*made_of, (motors, newer))
+    with pytest.raises(flagred.DataError, match="damaged"):
+        rebuild(*made_of, (motors, state[:-9]))
+    with pytest.raises(flagred.DataError, match="another profile, rule set or craft"):
+        rebuild(flagred.Profile("flagred"), *made_of[1:], (motors, state))
 
 
 def test_a_moment_lists_the_rules_that_fired():

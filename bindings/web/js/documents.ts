@@ -460,6 +460,8 @@ export interface Step {
   judged: boolean;
   /** The inputs of the rule set by their names. */
   inputs: Record<string, number | null>;
+  /** The other risks of the profile in %, by the names of their outputs. Only with such risks. */
+  other_risks?: Record<string, number | null>;
 }
 
 /** Summary figures of a flight. The risks are those of judged time (`Update::judged`). */

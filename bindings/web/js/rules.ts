@@ -475,6 +475,8 @@ export const exportRules = (text: string, format: Format, lossy = false): Exchan
 export interface Colours {
   /** 256 colours of a scale from low to high values. */
   scale: Uint8Array;
+  /** The same for risks, whose high values are bad: outputs with the name `risk` or a name that ends in `_risk`. */
+  risk: Uint8Array;
   /** Unordered colours. */
   distinct: Uint8Array;
   /** Unordered colours that are dark enough for thin lines on white. */
@@ -485,7 +487,7 @@ export interface Colours {
 export function colours(): Colours {
   const all = guarded(() => wasm.colours());
   const part = (from: number, to: number) => all.slice(3 * from, 3 * to);
-  return { scale: part(0, 256), distinct: part(256, 268), lines: part(268, 280) };
+  return { scale: part(0, 256), risk: part(256, 512), distinct: part(512, 524), lines: part(524, 536) };
 }
 
 function parsed<T>(call: () => string): T {

@@ -4,7 +4,7 @@ use flagred::{
     estimator::Estimator,
     flight::{Assessment, Step},
     profile::CRITICAL_ERROR_DEG,
-    verdict::{Level, Threshold},
+    verdict::{Level, LevelSettings, Threshold},
 };
 use flagred_flightlog::{Flight, Options, Signal};
 use fuzzy::{
@@ -14,6 +14,7 @@ use fuzzy::{
 
 use crate::{
     curve::{Stretch, area, path},
+    names::words_of,
     timeline::{Line, Mark, Panel, Phase, Size, Timeline},
 };
 
@@ -181,7 +182,10 @@ pub(crate) fn gap_s(estimator: &Estimator, rate_hz: Option<f64>) -> f64 {
     rate_hz.map_or(longest_gap_s, |rate_hz| longest_gap_s.max(5.0 / rate_hz))
 }
 
-/// Risk and elevated risk; `None` if no risk is known.
+/// The classes of the lines of other risks.
+const OTHER_RISKS: [&str; 3] = ["value", "motor", "mean"];
+
+/// Risk and elevated risk, and the other risks of the profile; `None` if no risk is known.
 pub(crate) fn risk(
     assessed: &Assessment,
     estimator: &Estimator,
@@ -190,27 +194,46 @@ pub(crate) fn risk(
     let gap_s = gap_s(estimator, None);
     let draw =
         |value: &dyn Fn(&Step) -> Option<f64>| of_steps(&assessed.steps, stretch, gap_s, 1, value);
-    let risk = draw(&|step| step.estimate.map(|estimate| estimate.risk_pct));
-    if risk.is_empty() {
-        return None;
-    }
-    let verdict = &estimator.profile().verdict;
-    let mark = |threshold: &Threshold, level| {
-        threshold.risk_pct.map(|risk_pct| Mark {
-            value: risk_pct,
-            class: level_class(level),
-            name: format!("{} from {} %", level, number(risk_pct, 1)),
-        })
-    };
-    let marks = [
-        mark(&verdict.warn.raise, Level::Warn),
-        mark(&verdict.fail.raise, Level::Fail),
-    ];
+    let others = &estimator.profile().other_risks;
+    let of_others = others.iter().zip(OTHER_RISKS.into_iter().cycle());
+    let of_others = of_others.enumerate().map(|(i, (risk, class))| {
+        let data = draw(&|step| step.other_risks_pct.get(i).copied());
+        Line::new(class, words_of(&risk.output), data)
+    });
     let elevated = draw(&|step| step.elevated_risk_pct);
-    let lines = vec![
+    let risk = draw(&|step| step.estimate.map(|estimate| estimate.risk_pct));
+    let main = [
         Line::new("elevated", "elevated risk", elevated),
         Line::new("risk", "risk", risk),
     ];
+    let lines: Vec<Line> = of_others.chain(main).collect();
+    if lines.iter().all(|line| line.data.is_empty()) {
+        return None;
+    }
+    let verdict = &estimator.profile().verdict;
+    let mark = |raise: &Threshold, level, of: &str| {
+        raise.risk_pct.map(|risk_pct| Mark {
+            value: risk_pct,
+            class: level_class(level),
+            name: format!("{level}{of} from {} %", number(risk_pct, 1)),
+        })
+    };
+    let levels = |warn: &LevelSettings, fail: &LevelSettings, of: &str| {
+        let warn = mark(&warn.raise, Level::Warn, of);
+        warn.into_iter()
+            .chain(mark(&fail.raise, Level::Fail, of))
+            .collect::<Vec<_>>()
+    };
+    let mut marks = levels(&verdict.warn, &verdict.fail, "");
+    for risk in others {
+        let of = format!(" of {}", words_of(&risk.output));
+        for own in levels(&risk.warn, &risk.fail, &of) {
+            let is_same = |mark: &Mark| (mark.value, mark.class) == (own.value, own.class);
+            if !marks.iter().any(is_same) {
+                marks.push(own);
+            }
+        }
+    }
     let intervals = assessed.steps.iter().map(|step| {
         let interval = step.risk_interval;
         let ends = interval.map(|interval| (interval.low_pct, interval.high_pct));
@@ -220,7 +243,7 @@ pub(crate) fn risk(
     let band = Line::new("risk", "interval of the risk", band);
     Some(Panel {
         band: Some(band).filter(|band| !band.data.is_empty()),
-        marks: marks.into_iter().flatten().collect(),
+        marks,
         ..Panel::new("Risk", PERCENT, Size::Large, lines)
     })
 }
@@ -309,7 +332,7 @@ pub(crate) fn inputs(
             step.inputs.get(i).copied()
         });
         let lines = vec![Line::new("value", unit.unwrap_or_default(), data)];
-        let panel = Panel::new(input.name.as_str(), (scale, ""), Size::Small, lines);
+        let panel = Panel::new(words_of(&input.name), (scale, ""), Size::Small, lines);
         panel.has_data().then_some((i, panel))
     };
     let inputs = estimator.profile().inputs.iter().enumerate();

@@ -9,7 +9,7 @@ use fuzzy::{
 };
 use maud::{Markup, PreEscaped, html};
 
-use crate::panel::percent;
+use crate::{names::words_of, panel::percent};
 
 /// The number of cells along each side of the map.
 const CELLS: usize = 48;
@@ -93,7 +93,7 @@ pub(super) fn map(estimator: &Estimator, model: &Model, steps: &[Step]) -> Optio
         .zip(&slice.means)
         .enumerate()
         .filter(|(i, _)| !slice.shown.contains(i))
-        .map(|(_, (input, mean))| format!("{} {}", input.name, number(*mean, 3)))
+        .map(|(_, (input, mean))| format!("{} {}", words_of(&input.name), number(*mean, 3)))
         .collect();
     let drawing = cells(estimator, &slice, x_scale, y_scale)
         + &path(&assessed, [x, y], x_scale, y_scale)
@@ -102,6 +102,7 @@ pub(super) fn map(estimator: &Estimator, model: &Model, steps: &[Step]) -> Optio
     Some(html! {
         figure.map data-x=(x) data-y=(y) data-box=(data_box) {
             figcaption { b { "The flight on the decision map" } " " output {} }
+            p.axis { "↑ " (words_of(y_name)) }
             .frame {
                 @for (share, label) in marks(y_scale) {
                     span.y style={ "bottom:" (percent(share)) } { (label) }
@@ -122,12 +123,12 @@ pub(super) fn map(estimator: &Estimator, model: &Model, steps: &[Step]) -> Optio
                     span style={ "left:" (percent(share)) } { (label) }
                 }
             }
+            p.axis.across { (words_of(x_name)) " →" }
             p.axes {
-                "Horizontal: " (x_name) ". Vertical: " (y_name) "."
                 @if !others.is_empty() {
-                    " The other inputs are held at their mean: " (others.join(", ")) "."
+                    "The other inputs are held at their mean: " (others.join(", ")) ". "
                 }
-                " The line is the path of the flight. A larger dot means more time at that point. "
+                "The line is the path of the flight. A larger dot means more time at that point. "
                 "Hatched: no rule applies, the risk is interpolated."
             }
             p.legend {

@@ -8,7 +8,7 @@ use flagred::{
 use flagred_flightlog::{Flight, Motor};
 use fuzzy::drawing::number;
 
-use crate::clock::Clock;
+use crate::{clock::Clock, names::words_of};
 
 /// The context for describing findings in words.
 #[derive(Clone, Copy)]
@@ -112,7 +112,12 @@ impl<'a> FindingContext<'a> {
         let mut parts = Vec::new();
         if let Some(cause) = &finding.cause {
             let value = number(cause.value, 3);
-            parts.push(format!("{cause}: {value}, rule {}", cause.rule + 1));
+            let input = words_of(&cause.input);
+            parts.push(format!(
+                "{input} {}: {value}, rule {}",
+                cause.term,
+                cause.rule + 1
+            ));
             parts.extend(self.description(cause).map(str::to_owned));
         }
         let mut raised = format!(

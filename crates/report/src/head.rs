@@ -7,13 +7,13 @@ use flagred::{
     profile::{Followed, Reliability},
     verdict::Measure,
 };
-use fuzzy::drawing::visible;
 use maud::{Markup, html};
 
 use crate::{
     charts,
     clock::Clock,
     finding::{self, FindingContext},
+    names::words_of,
     subject::Subject,
     words,
 };
@@ -165,12 +165,13 @@ fn figures(subject: &Subject, estimator: &Estimator) -> Markup {
         let worst = finding::highest_of(&risk.output, &subject.assessed.findings)?;
         let span = clock.span(worst.from_s, worst.to_s);
         let value = format!("{:.0} %, within {span}", worst.value_pct);
-        Some((format!("Highest {}", visible(&risk.output)), value))
+        Some((format!("Highest {}", words_of(&risk.output)), value))
     });
     let figures = risks.chain(others).chain([time]);
     html! {
         dl.figures {
-            @for (name, value) in figures { div { dt { (name) } dd { (value) } } }
+            // A number and its unit stay on one line.
+            @for (name, value) in figures { div { dt { (name) } dd { (value.replace(" %", "\u{a0}%").replace(" min", "\u{a0}min")) } } }
         }
         @if summary.risk_max.is_some() {
             p.soft {

@@ -13,6 +13,7 @@ pub mod document;
 pub mod finding;
 mod head;
 pub mod moment;
+mod names;
 pub mod offered;
 pub mod page;
 mod panel;

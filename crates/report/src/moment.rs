@@ -48,7 +48,7 @@ pub fn moment<'a>(
     Moment {
         t_s,
         mode: modes.last().map(|mode| mode.what.as_str()),
-        step: step.map(|step| step.by_name(&assessed.inputs)),
+        step: step.map(|step| step.by_name(assessed)),
         filled_from: estimate.and_then(|estimate| estimate.filled_from),
         clamped: estimate.is_some_and(|estimate| estimate.clamped),
         inputs,

@@ -76,7 +76,7 @@ fn phases(timeline: &Timeline) -> Markup {
     html! {
         @for phase in &timeline.phases {
             @let (from, to) = ends(&phase.stretch);
-            span.phase.narrow[to - from < 0.03] style={ "left:" (percent(from)) ";width:" (percent(to - from)) } { (phase.name) }
+            span.phase title=(phase.name) style={ "left:" (percent(from)) ";width:" (percent(to - from)) } { span { (phase.name) } }
         }
     }
 }
@@ -88,8 +88,9 @@ fn times(timeline: &Timeline) -> Markup {
         .times {
             @for (t_s, label) in stretch.ticks(timeline.zero_s) {
                 @let share = stretch.share(t_s);
-                // Near the right edge, the label ends at its tick, because a phone has no room beyond the edge.
-                span.end[share > 0.94] style={ "left:" (percent(share)) } { (label) }
+                // Near an edge, the label begins or ends at its tick: there is no room beyond the edge on a phone, and at the left the
+                // lowest value of the scale is beside it.
+                span.start[share < 0.03].end[share > 0.94] style={ "left:" (percent(share)) } { (label) }
             }
         }
     }

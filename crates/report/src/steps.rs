@@ -12,8 +12,8 @@ use crate::table::cell;
 /// The default distance between the steps that are shown, in seconds.
 pub const STEP_S: f64 = 0.1;
 
-/// A step as columns and fields, named as in JSON; the inputs of the profile are `input_NAME`. An unknown value is an
-/// empty field.
+/// A step as columns and fields, named as in JSON; the inputs of the profile are `input_NAME`, its other risks
+/// `other_risk_NAME`. An unknown value is an empty field.
 fn row(estimator: &Estimator, step: &Step) -> Vec<(String, String)> {
     let number = |value: Option<f64>| {
         let known = value.filter(|value| value.is_finite());
@@ -42,6 +42,11 @@ fn row(estimator: &Estimator, step: &Step) -> Vec<(String, String)> {
     row.extend(inputs.map(|(i, input)| {
         let field = number(step.inputs.get(i).copied());
         (format!("input_{}", input.name), field)
+    }));
+    let others = estimator.profile().other_risks.iter().enumerate();
+    row.extend(others.map(|(i, risk)| {
+        let field = number(step.other_risks_pct.get(i).copied());
+        (format!("other_risk_{}", risk.output), field)
     }));
     row
 }

@@ -106,7 +106,10 @@ pub(crate) fn map(flight: &Flight, assessed: &Assessment, stretch: Stretch) -> O
             p.legend {
                 "risk 0 % "
                 span { @for i in 0..COLOURS { i style={ "background:" (colour(i)) } {} } }
-                " 100 % " span.unknown {} " unknown " span.take-off {} " take-off " span.landing {} " landing"
+                " 100 % "
+                @for (class, name) in [("unknown", "unknown"), ("take-off", "take-off"), ("landing", "landing")] {
+                    b { span.(class) {} " " (name) } " "
+                }
             }
         }
     })

@@ -374,3 +374,8 @@ impl Channel {
         }
     }
 }
+
+state! {
+    struct ChannelState { window, exponential, last, bin, has_arrived }
+    struct Bin { index, samples, sum, held_s, end_s, before }
+}

@@ -19,6 +19,8 @@ pub struct Assessment {
     pub summary: Summary,
     /// The names of the inputs of the rule set, in the order of [`Step::inputs`].
     pub inputs: Vec<String>,
+    /// The names of the other risks of the profile, in the order of [`Step::other_risks_pct`].
+    pub other_risks: Vec<String>,
     /// The inputs whose values were assumed, at least until their signals were known.
     pub assumed_inputs: Vec<AssumedInput>,
     /// The reason why a risk was unknown in the air; of several reasons, the one that applied longest. `None` if all
@@ -123,6 +125,8 @@ pub struct Step {
     pub judged: bool,
     /// The inputs of the rule set, in the order of the profile; NaN is unknown.
     pub inputs: Vec<f64>,
+    /// The other risks in %, in the order of [`Profile::other_risks`]; NaN is unknown.
+    pub other_risks_pct: Vec<f64>,
 }
 
 impl Assessment {
@@ -134,10 +138,17 @@ impl Assessment {
             findings_left_out: 0,
             summary: Summary::default(),
             inputs: Vec::new(),
+            other_risks: Vec::new(),
             assumed_inputs: Vec::new(),
             unknown_risk: None,
             steps: Vec::new(),
             widened_step_s: None,
         }
     }
+}
+
+state! {
+    struct Step { t_s, estimate, risk_interval, elevated_risk_pct, margin, spread, judged, inputs, other_risks_pct }
+    struct Summary { in_air_s, assessed_s, filled_s, risk_mean_pct, risk_max, elevated_risk_max, saturated_share }
+    struct Peak { t_s, value_pct }
 }

@@ -91,6 +91,11 @@ impl fmt::Display for Cause {
     }
 }
 
+state! {
+    struct Finding { found, cause, risk_interval, risk_output }
+    struct Cause { input, value, term, rule }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -134,3 +134,8 @@ impl MotorLoss {
         }
     }
 }
+
+state! {
+    struct Losses { latest, longest, all, set_back_s, taken, ignored }
+    struct MotorLoss { motor, others, command, from_s, to_s, unknown_s, lost_s }
+}

@@ -108,8 +108,8 @@ impl Assessment {
 }
 
 impl Step {
-    /// The step as serde data, with the inputs by their names from [`Assessment::inputs`].
-    pub fn by_name<'a>(&'a self, names: &'a [String]) -> NamedStep<'a> {
+    /// The step of an assessment as serde data, with the inputs and other risks by their names.
+    pub fn by_name<'a>(&'a self, of: &'a Assessment) -> NamedStep<'a> {
         NamedStep {
             t_s: self.t_s,
             risk: RiskFields::new(self.estimate, self.elevated_risk_pct),
@@ -118,9 +118,13 @@ impl Step {
             margin: self.margin,
             spread: self.spread,
             judged: self.judged,
-            inputs: NamedInputs {
-                names,
+            inputs: ByName {
+                names: &of.inputs,
                 values: &self.inputs,
+            },
+            other_risks: ByName {
+                names: &of.other_risks,
+                values: &self.other_risks_pct,
             },
         }
     }
@@ -137,8 +141,7 @@ pub struct Steps<'a>(&'a Assessment);
 
 impl Serialize for Steps<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let names = &self.0.inputs;
-        serializer.collect_seq(self.0.steps.iter().map(|step| step.by_name(names)))
+        serializer.collect_seq(self.0.steps.iter().map(|step| step.by_name(self.0)))
     }
 }
 
@@ -164,7 +167,10 @@ pub struct NamedStep<'a> {
     /// Whether the step counts for findings and summary.
     judged: bool,
     /// The inputs of the rule set by their names.
-    inputs: NamedInputs<'a>,
+    inputs: ByName<'a>,
+    /// The other risks of the profile in %, by the names of their outputs. Only with such risks.
+    #[serde(skip_serializing_if = "ByName::is_empty")]
+    other_risks: ByName<'a>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -173,12 +179,18 @@ pub struct NamedStep<'a> {
     feature = "schema",
     schemars(with = "alloc::collections::BTreeMap<String, Option<f64>>", inline)
 )]
-struct NamedInputs<'a> {
+struct ByName<'a> {
     names: &'a [String],
     values: &'a [f64],
 }
 
-impl Serialize for NamedInputs<'_> {
+impl ByName<'_> {
+    fn is_empty(&self) -> bool {
+        self.names.is_empty()
+    }
+}
+
+impl Serialize for ByName<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(self.names.iter().zip(self.values))
     }

@@ -2,6 +2,7 @@ use super::*;
 use crate::{shipped, verdict::Measure};
 
 mod loss;
+mod state;
 mod uncertainty;
 mod words;
 

@@ -145,3 +145,9 @@ impl<'e> RiskBounds<'e> {
         })
     }
 }
+
+state! {
+    struct UncertainRisk { estimate, inputs }
+    struct UncertainPeak { from_s, severity, value_pct, risk }
+    struct RiskInterval { low_pct, high_pct }
+}

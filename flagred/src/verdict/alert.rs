@@ -255,6 +255,12 @@ fn weakest(motors: &[Motor]) -> Option<MotorFinding> {
     })
 }
 
+state! {
+    struct Alert {
+        settings, level, last_held_s, reached_since_s, finding, needs_cause
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -243,3 +243,5 @@ fn named(motors: &[Motor], motor: usize, side: Side, or: Option<usize>) -> Motor
         margin_min: margin,
     }
 }
+
+state! { struct Balance { load, is_back, slow_down_together } }

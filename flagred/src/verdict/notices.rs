@@ -181,3 +181,10 @@ impl NoticeState {
         }
     }
 }
+
+state! {
+    struct Notices {
+        settings, noise_squared, reserve, balance, watches
+    }
+    struct NoticeState { passed_since_s, finding }
+}

@@ -45,6 +45,15 @@ pub fn reds(share: f64) -> Colour {
     between(&REDS, share)
 }
 
+/// Returns the colour for a fraction from 0 to 1 of the range of an output: [`reds`] for a risk, which is an output with a
+/// name such as `risk` or `battery_risk`, otherwise [`viridis`].
+pub fn output_colour(output: &str, share: f64) -> Colour {
+    match output == "risk" || output.ends_with("_risk") {
+        true => reds(share),
+        false => viridis(share),
+    }
+}
+
 impl Colour {
     /// Black.
     pub const BLACK: Colour = Colour(0, 0, 0);
@@ -132,6 +141,9 @@ mod tests {
             (reds(0.0).to_string(), reds(1.0).to_string()),
             ("#fffad6".into(), "#6e0826".into())
         );
+        let of = |output| output_colour(output, 1.0);
+        assert_eq!((of("battery_risk"), of("risk")), (REDS[4], REDS[4]));
+        assert_eq!((of("risky"), of("fan")), (VIRIDIS[10], VIRIDIS[10]));
         assert_eq!(VIRIDIS[0].ink(), Colour::WHITE);
         assert_eq!(VIRIDIS[10].ink(), Colour::BLACK);
     }

@@ -3,7 +3,7 @@
 use std::fmt::{self, Write as _};
 
 use super::{
-    colour::{Colour, viridis},
+    colour::{Colour, output_colour},
     scale::Scale,
     slice::Slice,
     text::{EscapedText, cut, number, short, wrapped},
@@ -275,7 +275,8 @@ impl SvgDocument {
         for i in 0..STEPS {
             let (left, top) = bar.at(0.0, f64::from(i + 1) / f64::from(STEPS));
             let height = bar.height / f64::from(STEPS);
-            let colour = viridis((f64::from(i) + 0.5) / f64::from(STEPS));
+            let share = (f64::from(i) + 0.5) / f64::from(STEPS);
+            let colour = output_colour(&slice.output, share);
             self.rect(
                 Frame {
                     left,

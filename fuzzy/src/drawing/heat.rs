@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::{
-    colour::{Colour, viridis},
+    colour::{Colour, output_colour},
     contour,
     document::{Anchor, Frame, SvgDocument, px},
     scale::Scale,
@@ -26,7 +26,7 @@ pub fn map_svg(slice: &Slice) -> String {
     match &slice.y {
         Some(y) => {
             cells(&mut document, slice, |i, j| {
-                Some(step_colour(slice.share(slice.cell(i, j).value?)))
+                Some(step_colour(slice, slice.share(slice.cell(i, j).value?)))
             });
             contours(&mut document, slice);
             axes(&mut document, slice, y.scale(), &y.title());
@@ -47,9 +47,9 @@ pub fn map_svg(slice: &Slice) -> String {
     document.finish(&whole_title(slice))
 }
 
-/// Returns the colour for a fraction of the range, in steps.
-pub(super) fn step_colour(share: f64) -> Colour {
-    viridis((share * COLOURS).round() / COLOURS)
+/// Returns the colour for a fraction of the range of the output, in steps.
+pub(super) fn step_colour(slice: &Slice, share: f64) -> Colour {
+    output_colour(&slice.output, (share * COLOURS).round() / COLOURS)
 }
 
 /// Returns the title of the slice with the values of the fixed inputs.

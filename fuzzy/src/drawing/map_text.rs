@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::{
-    colour::{Colour, distinct, viridis},
+    colour::{Colour, distinct, output_colour},
     scale::thinned,
     slice::{Cell, Slice},
     text::{number, short, visible},
@@ -38,7 +38,8 @@ pub fn map_text(slice: &Slice, paint: impl Fn(char, Option<Colour>) -> String) -
         } else {
             b'0'
         };
-        paint(char::from(first + tenth), Some(viridis(slice.share(value))))
+        let colour = output_colour(&slice.output, slice.share(value));
+        paint(char::from(first + tenth), Some(colour))
     });
     let (low, high) = (short(slice.range.low), short(slice.range.high));
     let unit = slice.unit.as_ref();

@@ -43,7 +43,7 @@ mod surface;
 mod text;
 mod variables;
 
-pub use colour::{Colour, distinct, distinct_line, reds, viridis};
+pub use colour::{Colour, distinct, distinct_line, output_colour, reds, viridis};
 pub use document::{Anchor, Frame, SvgDocument};
 pub use explanation::{explanation_svg, terms_svg};
 pub use explanation_text::explanation_text;

@@ -91,7 +91,7 @@ pub fn surface_svg(slice: &Slice) -> Option<String> {
     // The farthest quads are drawn first, so that nearer ones cover them.
     quads.sort_by(|a, b| b.0.total_cmp(&a.0));
     for (_, points, height, is_filled) in quads {
-        let colour = step_colour(height);
+        let colour = step_colour(slice, height);
         let edge = colour.mix(Colour::BLACK, 0.25);
         let paint = format_args!(r#"fill="{colour}" stroke="{edge}" stroke-width=".5""#);
         document.through("polygon", &points, paint);

@@ -16,6 +16,11 @@ const MAX_RULES = 8;
 
 const percent = (value: number | null | undefined) => (value === null || value === undefined ? 'unknown' : `${said(value)} %`);
 
+/** The name of an input or output as words on one line. */
+const wordsOf = (name: string) => name.replaceAll('_', '\u00a0');
+
+const capital = (text: string) => text.charAt(0).toUpperCase() + text.slice(1);
+
 /** Creates a panel, which is empty at first. */
 export function momentPanel(): MomentPanel {
   const head = h('summary', {}, 'At the cursor');
@@ -50,6 +55,7 @@ function facts({ step, filled_from, clamped }: Moment): Child {
   const rows: [string, string][] = [
     ['Risk', percent(step.risk)],
     ['Elevated risk', percent(step.elevated_risk)],
+    ...Object.entries(step.other_risks ?? {}).map(([name, risk]): [string, string] => [capital(wordsOf(name)), percent(risk)]),
     ['Coverage', step.coverage === null ? 'unknown' : said(step.coverage)],
   ];
   const list = h('dl', { class: 'now' });
@@ -90,14 +96,14 @@ function rules({ rules: fired, step }: Moment): Child {
 
 function inputs({ inputs: explained, step, units }: Moment): Child {
   if (explained.length === 0) {
-    const unknown = Object.entries(step?.inputs ?? {}).flatMap(([name, value]) => (value === null ? [name] : []));
+    const unknown = Object.entries(step?.inputs ?? {}).flatMap(([name, value]) => (value === null ? [wordsOf(name)] : []));
     return unknown.length > 0 && h('p', { class: 'soft' }, `Unknown: ${unknown.join(', ')}.`);
   }
   const list = h('dl', { class: 'inputs' });
   for (const { name, given, terms } of explained) {
     const degrees = terms.filter(({ degree }) => degree >= 0.005).map(({ term, degree }) => `${term} ${degree.toFixed(2)}`);
     list.append(
-      h('div', {}, h('dt', {}, name), h('dd', {}, said(given, units[name]), h('span', { class: 'soft' }, ` ${degrees.join(', ')}`))),
+      h('div', {}, h('dt', {}, wordsOf(name)), h('dd', {}, said(given, units[name]), h('span', { class: 'soft' }, ` ${degrees.join(', ')}`))),
     );
   }
   return h('div', {}, h('h3', {}, 'Inputs'), list);

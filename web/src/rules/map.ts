@@ -90,7 +90,7 @@ export function decisionMap(colours: Colours, point: Point): DecisionMap {
     }
     else if (shown.y) flat(pen, small, frame, shown, colours, ink);
     else curve(pen, frame, shown, ink);
-    if (shown.kind !== 'rules' && shown.y) scale(pen, frame, width, shown, colours, ink);
+    if (shown.kind !== 'rules' && shown.y) legend(pen, frame, width, shown, colours, ink);
     canvas.setAttribute('aria-label', spoken(shown));
   }
 
@@ -156,12 +156,16 @@ function inks(element: Element): Ink {
 
 const share = (value: number, low: number, high: number) => clamp((value - low) / (high - low), 0, 1);
 
+/** The 256 colours of the output. */
+export const scaleOf = ({ output }: Shown, { scale, risk }: Colours): Uint8Array => (/^(.*_)?risk$/.test(output.name) ? risk : scale);
+
 /** Draws the cells as pixels, seen from above; the second axis points up. */
 function pixels(shown: Shown, colours: Colours): ImageData {
   const { cells, output, kind, view } = shown;
   const points = view.points;
   const image = new ImageData(points, points);
-  const { scale, distinct } = colours;
+  const { distinct } = colours;
+  const scale = scaleOf(shown, colours);
   const isRules = kind === 'rules';
   const steps = 255 / (output.high - output.low);
   for (let i = 0; i < points; i++) {
@@ -309,11 +313,12 @@ export function dot(pen: CanvasRenderingContext2D, x: number, y: number, ink: In
 }
 
 /** Draws the colours next to the map and their meaning. */
-function scale(pen: CanvasRenderingContext2D, frame: Frame, width: number, shown: Shown, colours: Colours, ink: Ink): void {
+function legend(pen: CanvasRenderingContext2D, frame: Frame, width: number, shown: Shown, colours: Colours, ink: Ink): void {
   const left = width - RIGHT + 12;
+  const scale = scaleOf(shown, colours);
   for (let y = 0; y < frame.height; y++) {
     const at = 3 * Math.round(255 * (1 - y / (frame.height - 1)));
-    pen.fillStyle = `rgb(${colours.scale[at]} ${colours.scale[at + 1]} ${colours.scale[at + 2]})`;
+    pen.fillStyle = `rgb(${scale[at]} ${scale[at + 1]} ${scale[at + 2]})`;
     pen.fillRect(left, frame.top + y, 10, 1.5);
   }
   pen.fillStyle = ink.soft;

@@ -1,7 +1,7 @@
 /** Draws the surface of an output over two inputs on a canvas, with numbers at the axes. It can be turned. */
 
 import type { Colours, Variable } from 'flagred';
-import { dot, titled, type Frame, type Ink, type Shown } from './map';
+import { dot, scaleOf, titled, type Frame, type Ink, type Shown } from './map';
 import { clamp, short, ticks } from './numbers';
 
 /** The direction of view in degrees: rotation about the vertical axis, and tilt. */
@@ -37,9 +37,11 @@ interface Mesh {
 
 let latest: Mesh | undefined;
 
-function mesh({ cells, view, output }: Shown, colours: Colours): Mesh {
+function mesh(shown: Shown, colours: Colours): Mesh {
+  const { cells, view, output } = shown;
   if (latest?.cells === cells.values && latest.colours === colours) return latest;
   const { points } = view;
+  const scale = scaleOf(shown, colours);
   const count = Math.min(points, MOST);
   const index = (i: number) => Math.round((i * (points - 1)) / (count - 1));
   const heights = new Float64Array(count * count);
@@ -55,7 +57,7 @@ function mesh({ cells, view, output }: Shown, colours: Colours): Mesh {
       const at = i * count + j;
       const mean = (heights[at]! + heights[at + 1]! + heights[at + count]! + heights[at + count + 1]!) / 4;
       const colour = 3 * Math.round(255 * mean);
-      faces.push(Number.isNaN(mean) ? undefined : `rgb(${colours.scale[colour]},${colours.scale[colour + 1]},${colours.scale[colour + 2]})`);
+      faces.push(Number.isNaN(mean) ? undefined : `rgb(${scale[colour]},${scale[colour + 1]},${scale[colour + 2]})`);
     }
   }
   latest = { cells: cells.values, colours, count, heights, faces };

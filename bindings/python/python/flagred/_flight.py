@@ -348,7 +348,7 @@ class Assessment(AssessmentData):
     def steps(self) -> Table:
         """The risk over time, a row per step: ``t_s``, ``risk`` in % with the ends of its interval ``risk_low`` and
         ``risk_high``, ``elevated_risk`` in %, ``coverage``, ``filled``, ``dominant_rule``, ``margin``, ``spread``,
-        ``judged``, and ``input_NAME`` for each input of the profile."""
+        ``judged``, ``input_NAME`` for each input of the profile, and ``other_risk_NAME`` in % for each of its other risks."""
         return self._steps()
 
     def moment(self, t_s: float) -> dict[str, Any]:

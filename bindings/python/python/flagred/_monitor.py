@@ -29,6 +29,9 @@ class MonitorResult(NamedTuple):
 class Monitor(MonitorData):
     """Follows a flight sample by sample, as on board.
 
+    A monitor can be pickled at any time, also during a flight. It then continues the flight with the same results. Only
+    the version of flagred that pickled a flight is sure to read it; another version refuses it with a :class:`DataError`.
+
     Parameters
     ----------
     profile
@@ -49,7 +52,7 @@ class Monitor(MonitorData):
     'FAIL'
     """
 
-    __slots__ = ("_has_begun", "_made_of", "_names")
+    __slots__ = ("_made_of", "_names")
 
     def __new__(
         cls, profile: Profile | str = "flagred", *, signals: Sequence[str] = (), step_s: float | None = None
@@ -57,21 +60,15 @@ class Monitor(MonitorData):
         if not isinstance(profile, Profile):
             profile = Profile(profile)
         monitor: Monitor = super().__new__(cls, profile, list(signals), step_s)
-        monitor._names, monitor._made_of, monitor._has_begun = list(signals), (profile, step_s), False
+        monitor._names, monitor._made_of = list(signals), (profile, step_s)
         return monitor
 
     _names: list[str]
     _made_of: tuple[Profile, float | None]
-    _has_begun: bool
 
     def __reduce__(self) -> tuple[Any, ...]:
-        if self._has_begun:
-            raise TypeError(
-                "a monitor cannot be pickled during a flight\n"
-                "  help: pickle what `finish()` returns, or push the samples into a new monitor in the other process"
-            )
         profile, step_s = self._made_of
-        return _new_monitor, (profile, self._names, step_s)
+        return _unpickled_monitor, (profile, self._names, step_s, self._state())
 
     def push(
         self,
@@ -103,9 +100,7 @@ class Monitor(MonitorData):
             The current risk and level.
         """
         known = signals or {}
-        update = self._push(t_s, commands, in_air, [known.get(name, float("nan")) for name in self._names])
-        self._has_begun = True
-        return update
+        return self._push(t_s, commands, in_air, [known.get(name, float("nan")) for name in self._names])
 
     def ended(self) -> list[Finding]:
         """The findings that ended with the latest sample."""
@@ -113,7 +108,7 @@ class Monitor(MonitorData):
 
     def finish(self) -> MonitorResult | None:
         """Ends the flight and returns its results; None without a sample. Later samples belong to a new flight."""
-        finished, self._has_begun = self._finish(), False
+        finished = self._finish()
         if finished is None:
             return None
         data, steps = json.loads(finished[0]), finished[1]
@@ -126,5 +121,10 @@ class Monitor(MonitorData):
         )
 
 
-def _new_monitor(profile: Profile, signals: list[str], step_s: float | None) -> Monitor:
-    return Monitor(profile, signals=signals, step_s=step_s)
+def _unpickled_monitor(
+    profile: Profile, signals: list[str], step_s: float | None, state: tuple[int, bytes] | None
+) -> Monitor:
+    monitor = Monitor(profile, signals=signals, step_s=step_s)
+    if state is not None:
+        monitor._restore(*state)
+    return monitor

@@ -57,10 +57,15 @@ def plot_map(map: DecisionMap, ax: Any | None) -> Any:
         ax.set_ylabel(map.output)
         return ax
     # Unknown values are blank.
-    drawn = ax.pcolormesh(axes[0][1], axes[1][1], map.values.T, shading="nearest")
+    drawn = ax.pcolormesh(axes[0][1], axes[1][1], map.values.T, shading="nearest", cmap=_colours(map))
     ax.set_ylabel(axes[1][0])
     ax.figure.colorbar(drawn, ax=ax, label=map.output)
     return ax
+
+
+def _colours(map: DecisionMap) -> str:
+    """The colours of the output: pictures of risks are red, as those of the command line and of the page."""
+    return "YlOrRd" if map.output == "risk" or map.output.endswith("_risk") else "viridis"
 
 
 def plot_surface(map: DecisionMap, ax: Any | None) -> Any:
@@ -75,7 +80,7 @@ def plot_surface(map: DecisionMap, ax: Any | None) -> Any:
         raise DataError('the axes are flat\n  help: make them with `plt.subplot(projection="3d")`')
     (x_name, x), (y_name, y) = axes
     # Rows of matplotlib's arrays run along y.
-    ax.plot_surface(x[None, :], y[:, None], map.values.T, cmap="viridis")
+    ax.plot_surface(x[None, :], y[:, None], map.values.T, cmap=_colours(map))
     ax.set_xlabel(x_name)
     ax.set_ylabel(y_name)
     ax.set_zlabel(map.output)

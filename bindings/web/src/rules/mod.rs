@@ -12,7 +12,7 @@ use flagred::shipped;
 use flagred_authoring::{answers::CheckDocument, starter};
 use fuzzy::{
     check,
-    drawing::{distinct, distinct_line, viridis},
+    drawing::{Colour, distinct, distinct_line, reds, viridis},
 };
 use serde::Serialize;
 use wasm_bindgen::{JsError, prelude::wasm_bindgen};
@@ -108,13 +108,13 @@ pub fn starting_points() -> Result<String, JsError> {
     ])
 }
 
-/// 256 colours of a scale from low to high, then 12 unordered colours, then 12 for thin lines on white, each as red,
-/// green and blue.
+/// 256 colours of a scale from low to high, 256 for risks, then 12 unordered colours, then 12 for thin lines on white, each
+/// as red, green and blue.
 #[wasm_bindgen]
 pub fn colours() -> Vec<u8> {
-    let scale = (0..=255u8).map(|i| viridis(f64::from(i) / 255.0));
+    let scale = |colour: fn(f64) -> Colour| (0..=255u8).map(move |i| colour(f64::from(i) / 255.0));
     let unordered = (0..12).map(distinct).chain((0..12).map(distinct_line));
-    let all = scale.chain(unordered);
+    let all = scale(viridis).chain(scale(reds)).chain(unordered);
     all.flat_map(|colour| [colour.0, colour.1, colour.2])
         .collect()
 }

@@ -32,6 +32,12 @@ class Mark(NamedTuple):
     name: str
 
 
+def _months(begin: datetime.date, end: datetime.date) -> list[float]:
+    """The beginnings of the months after a day until another, in seconds since 1970."""
+    firsts = ((month // 12, month % 12 + 1) for month in range(12 * begin.year + begin.month, 12 * end.year + end.month))
+    return [datetime.datetime(year, month, 1, tzinfo=datetime.timezone.utc).timestamp() for year, month in firsts]
+
+
 def chart(caption: str, points: Sequence[Point], marks: Sequence[Mark] = (), line: Sequence[tuple[float, float]] = (), large: bool = True) -> str:
     """Draws points over days, each with its interval as a bar; marks, with names only in a large chart; and a line."""
     if not points:
@@ -67,6 +73,12 @@ def chart(caption: str, points: Sequence[Point], marks: Sequence[Mark] = (), lin
         names.append(f"<span class=mark style='{side}'>{escape(mark.name)}</span>")
     begin, end = (datetime.datetime.fromtimestamp(at, datetime.timezone.utc).date() for at in (first, last))
     times = f"<span style='left:0;transform:none'>{begin}</span>" + (f"<span class=end style='left:100%'>{end}</span>" if end != begin else "")
+    # Beginnings of months between the dates at the ends, each of which takes a quarter of the width on a phone.
+    months = [at for at in _months(begin, end) if 300 <= x(at) <= 700]
+    for at in months[:: math.ceil(len(months) / 4) or 1]:
+        month = datetime.datetime.fromtimestamp(at, datetime.timezone.utc)
+        parts.append(f"<path class=grid d='M{x(at):.1f} 0V100' />")
+        times += f"<span style='left:{x(at) / 10:.1f}%'>{month:%b}</span>"
     picture = f"<svg class=plot viewBox='0 0 1000 100' preserveAspectRatio=none role=img aria-label='{escape(caption, quote=True)}'>{''.join(parts)}</svg>"
     frame = f"<div class=frame><div class=area>{picture}{''.join(names)}</div>{labels}</div><div class=times>{times}</div>"
     return f"<figure{' class=large' if large else ''}><figcaption>{escape(caption)}</figcaption>{frame}</figure>"

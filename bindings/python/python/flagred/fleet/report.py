@@ -147,11 +147,11 @@ def _body(
         f"<h1>Fleet {escape(name)}</h1><p class=soft>{span}Written on {today}.</p>",
         figures(
             {
-                "flights": f"{flights:,}",
-                "flights that warned": f"{warned:,}",
-                "vehicles": f"{len(vehicles):,}",
-                "in the air": f"{hours:,.1f} h",
-                "logs not read": f"{unread:,}",
+                "Flights": f"{flights:,}",
+                "Flights that warned": f"{warned:,}",
+                "Vehicles": f"{len(vehicles):,}",
+                "In the air": f"{hours:,.1f} h",
+                "Logs not read": f"{unread:,}",
             }
         ),
         "<h2>What to act on</h2>",

@@ -23,7 +23,8 @@ details{margin:.7rem 0;border-bottom:1px solid var(--grid);padding-bottom:.4rem}
 input[type=search]{font:inherit;color:inherit;background:var(--shade);border:1px solid var(--rule);border-radius:.3rem;padding:.3rem .5rem;width:min(22rem,100%)}
 .plot .dot{stroke-width:6;stroke-linecap:round;stroke-dasharray:none;opacity:.9}.plot .dot.under{stroke:var(--paper);stroke-width:8}
 .mark{position:absolute;top:.3rem;font-size:.75rem;line-height:1.15;color:var(--soft);padding-left:.25rem;white-space:nowrap;max-width:45%;overflow:hidden;text-overflow:ellipsis}
-@media screen and (max-width:40rem){dl.figures{grid-template-columns:1fr 1fr}
+@media(min-width:40.01rem){td.n+td:not(.n),th.n+th:not(.n){padding-left:.8rem}}
+@media screen and (max-width:40rem){dl.figures{grid-template-columns:1fr 1fr}dl.figures div:last-child:nth-child(odd){grid-column:1/-1}
 table.cards thead{display:none}table.cards tr{display:grid;grid-template-columns:1fr 1fr;gap:.1rem 1.2rem;padding:.5rem 0;border-bottom:1px solid var(--rule)}
 table.cards tr[hidden],table.cards td:empty{display:none}
 table.cards td{display:flex;flex-wrap:wrap;justify-content:flex-end;border:0;padding:.1rem 0;min-width:0;text-align:right;white-space:normal}

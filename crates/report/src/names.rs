@@ -1,0 +1,8 @@
+//! Names of rule sets, for readers.
+
+use fuzzy::drawing::visible;
+
+/// The name of an input or output as words: `battery_risk` is "battery risk".
+pub(crate) fn words_of(name: &str) -> String {
+    visible(name).replace('_', " ")
+}
