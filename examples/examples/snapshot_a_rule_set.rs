@@ -29,7 +29,7 @@ fn decisions() -> Result<String, Box<dyn Error>> {
     let engine = Engine::new(&model)?;
     let map = DecisionMap::new(&engine, Grid::new(&engine, 41)?, 0)?;
     let slice = drawing::Slice::new(&model, &map).ok_or("fix inputs until one or two are left")?;
-    Ok(drawing::map_text(&slice, |cell, _| cell.to_string()) + &drawing::values_text(&slice))
+    Ok(drawing::map_text(&slice, |cell, _| cell.to_string()) + &drawing::values_text(&slice, 6))
 }
 
 fn main() -> Result<(), Box<dyn Error>> {

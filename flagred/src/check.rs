@@ -9,13 +9,15 @@ use core::ops::Range;
 
 use fuzzy::{
     Findings, Model,
+    check::AcceptedFindings,
     diagnostic::{Diagnostic, Severity, nearest, suggest},
+    model::AllowedFinding,
     tree::{Node, Value},
 };
 
 use crate::{
     estimator::{Estimator, EstimatorError},
-    profile::{Profile, ProfileInput},
+    profile::{FINDINGS, Profile, ProfileInput},
     source::{Signal, Statistic, is_angle},
 };
 
@@ -53,41 +55,92 @@ pub fn profile(
     rules: &fuzzy::Source,
     signals: &[(&str, &str)],
 ) -> (Findings, Option<Estimator>) {
-    let text = profile.text();
-    let (tree, profile) = match (profile.tree(), Profile::from_source(profile)) {
-        (Ok(tree), Ok(profile)) => (tree, profile),
+    let (tree, read) = match (profile.tree(), Profile::from_source(profile)) {
+        (Ok(tree), Ok(read)) => (tree, read),
         (Err(findings), _) | (_, Err(findings)) => return (findings, None),
     };
-    let mut found = Vec::new();
     let at = ValuePositions(tree);
-    let estimator = compile(&profile, rules, &at, &mut found);
+    let (mut found, estimator) = examine(&read, rules, signals, &at);
+    let (allow, spans) = allowed(&at, |finding| finding != OUTVOTED);
+    let accepted = AcceptedFindings::remove(&allow, &mut found);
+    if estimator.is_some() {
+        found.extend(AcceptedFindings::unneeded(&accepted, &spans));
+    }
+    (Findings::locate(found, profile.text()), estimator)
+}
+
+/// All findings of [`profile`], including those that the author accepts.
+fn examine(
+    profile: &Profile,
+    rules: &fuzzy::Source,
+    signals: &[(&str, &str)],
+    at: &ValuePositions,
+) -> (Vec<Diagnostic>, Option<Estimator>) {
+    let mut found = Vec::new();
+    let estimator = compile(profile, rules, at, &mut found);
     if let Some(estimator) = &estimator {
-        thresholds(estimator, &["verdict"], &at, &mut found);
-        durations(estimator.profile(), &at, &mut found);
+        thresholds(estimator, &["verdict"], at, &mut found);
+        durations(estimator.profile(), at, &mut found);
         found.extend(elevated_shares(
             &profile.elevated_risk,
             &["elevated_risk"],
-            &at,
+            at,
         ));
         for risk in &profile.other_risks {
             let place = ["other_risks", &risk.output, "elevated_risk"];
             if risk.elevated_risk != profile.elevated_risk {
-                found.extend(elevated_shares(&risk.elevated_risk, &place, &at));
+                found.extend(elevated_shares(&risk.elevated_risk, &place, at));
             }
         }
         for other in estimator.others() {
             let place = ["other_risks", &other.profile().output];
-            thresholds(other, &place, &at, &mut found);
-            found.extend(dropped(&profile, other.profile(), &place, &at));
+            thresholds(other, &place, at, &mut found);
+            found.extend(dropped(profile, other.profile(), &place, at));
         }
         for input in &profile.inputs {
-            found.extend(signal(input, estimator.engine().model(), signals, &at));
-            found.extend(least_divisor(input, &profile, &at));
+            found.extend(signal(input, estimator.engine().model(), signals, at));
+            found.extend(least_divisor(input, profile, at));
         }
     }
     let is_usable = found.iter().all(|one| one.severity < Severity::Error);
-    let estimator = estimator.filter(|_| is_usable);
-    (Findings::locate(found, text), estimator)
+    (found, estimator.filter(|_| is_usable))
+}
+
+/// The code of the findings of [`outvoted`].
+const OUTVOTED: &str = "outvoted";
+
+/// The entries of `allow` whose code is one of some, with their positions.
+fn allowed(
+    at: &ValuePositions,
+    is_one: impl Fn(&str) -> bool,
+) -> (Vec<AllowedFinding>, Vec<Range<usize>>) {
+    let Some(node) = at.0.child("allow") else {
+        return (Vec::new(), Vec::new());
+    };
+    let mut spans = Vec::new();
+    // The profile was read from the same text, without errors.
+    let all = AllowedFinding::read(node, &FINDINGS, &mut spans, &mut Vec::new());
+    let entries = all.into_iter().zip(spans);
+    entries.filter(|(one, _)| is_one(&one.finding)).unzip()
+}
+
+/// Returns the entries of `allow`, each with the number of findings of [`profile`] and [`outvoted`] that it accepts.
+pub fn accepted(
+    profile: &fuzzy::Source,
+    rules: &fuzzy::Source,
+    signals: &[(&str, &str)],
+) -> Vec<AcceptedFindings> {
+    let (Ok(tree), Ok(read)) = (profile.tree(), Profile::from_source(profile)) else {
+        return Vec::new();
+    };
+    if read.allow.is_empty() {
+        return Vec::new();
+    }
+    let at = ValuePositions(tree);
+    let (mut found, estimator) = examine(&read, rules, signals, &at);
+    let outvoted = estimator.iter().flat_map(|one| alone::outvoted(one, &at));
+    found.extend(outvoted);
+    AcceptedFindings::remove(&read.allow, &mut found)
 }
 
 /// Warns about inputs that do not come from the motors and cannot raise a level by themselves: the other inputs outvote
@@ -114,10 +167,14 @@ pub fn profile(
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn outvoted(profile: &fuzzy::Source, estimator: &Estimator) -> Findings {
-    let found = match profile.tree() {
-        Ok(tree) => alone::outvoted(estimator, &ValuePositions(tree)),
-        Err(_) => Vec::new(),
+    let Ok(tree) = profile.tree() else {
+        return Findings::locate(Vec::new(), profile.text());
     };
+    let at = ValuePositions(tree);
+    let mut found = alone::outvoted(estimator, &at);
+    let (allow, spans) = allowed(&at, |finding| finding == OUTVOTED);
+    let accepted = AcceptedFindings::remove(&allow, &mut found);
+    found.extend(AcceptedFindings::unneeded(&accepted, &spans));
     Findings::locate(found, profile.text())
 }
 

@@ -283,7 +283,7 @@ impl Assessor {
     /// let mut other = Assessor::new(&estimator, Craft::new(4), None)?.restore(&state)?;
     /// hover(&mut one, 500);
     /// hover(&mut other, 500);
-    /// assert_eq!(one.finish(), other.finish());
+    /// assert_eq!(one.finish().summary, other.finish().summary);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn state(&self) -> Vec<u8> {

@@ -15,6 +15,7 @@ use alloc::{
 
 use fuzzy::{
     Findings, Source,
+    check::AcceptedFindings,
     diagnostic::nearest,
     tree::{Node, Value},
 };
@@ -173,9 +174,18 @@ pub fn examine(profile: &Source, rules: &Source) -> (Findings, Option<Estimator>
 
 /// The findings of [`check::profile`], with the signals that flight logs contain.
 pub fn fit(profile: &Source, rules: &Source) -> (Findings, Option<Estimator>) {
+    check::profile(profile, rules, &signals())
+}
+
+/// The findings that the author of a profile accepts: those of [`check::accepted`], with the signals that flight logs contain.
+#[doc(hidden)] // For the programs of this repository.
+pub fn accepted(profile: &Source, rules: &Source) -> Vec<AcceptedFindings> {
+    check::accepted(profile, rules, &signals())
+}
+
+fn signals() -> Vec<(&'static str, &'static str)> {
     let known = flagred_flightlog::known_signals();
-    let signals: Vec<(&str, &str)> = known.iter().map(|s| (s.name, s.unit)).collect();
-    check::profile(profile, rules, &signals)
+    known.iter().map(|s| (s.name, s.unit)).collect()
 }
 
 /// The rule set that a profile names, after verifying that it compiles.

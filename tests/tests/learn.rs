@@ -54,7 +54,7 @@ fn an_unsuitable_template_is_refused_with_help() {
         let model = folder.file("model.yaml", &text);
         let output = learn(&[&model, &data, "-o", &folder.at("out.yaml")]);
         let reported = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{reported}");
+        assert_eq!(output.status.code(), Some(3), "{reported}");
         assert!(reported.contains(expected), "{reported}");
     }
 }

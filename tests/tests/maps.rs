@@ -51,7 +51,7 @@ fn a_picture_of_every_rule_set() {
         let map = DecisionMap::new(&engine, grid, 0).unwrap();
         let slice = drawing::Slice::new(&model, &map).unwrap();
         let text = drawing::map_text(&slice, |cell, _| cell.to_string());
-        insta::assert_snapshot!(text + &drawing::values_text(&slice));
+        insta::assert_snapshot!(text + &drawing::values_text(&slice, 6));
     });
 }
 
@@ -357,7 +357,7 @@ fn map_values_prints_a_table_for_each_slice() {
     let picture = drawing::map_text(&slice, |cell, _| cell.to_string());
     assert_eq!(
         text,
-        picture + &drawing::values_text(&slice),
+        picture + &drawing::values_text(&slice, 26),
         "the library's text"
     );
 }

@@ -47,10 +47,6 @@ fn nothing_from_outside_acts_on_a_terminal() {
         format!("margin,spread,risk,vehicle\n{HOSTILE},0.1,50,{HOSTILE}\n"),
     );
     let table = &folder.file("table.csv", format!("att_rmse_deg,margin,spread,vehicle,kind\n1,0.3,0.05,{HOSTILE},{HOSTILE}\n9,0.02,0.2,b,c\n"));
-    let points = &folder.file(
-        "points.csv",
-        format!("margin,spread,{HOSTILE}\n0.1,0.1,{HOSTILE}\n"),
-    );
     let out = &folder.at("out.yaml");
     let values = ["margin=0.1", "spread=0.1"];
     for (arguments, names_it) in [
@@ -73,7 +69,6 @@ fn nothing_from_outside_acts_on_a_terminal() {
         (vec!["map", rules], true),
         (vec!["map", rules, "--activations"], true),
         (vec!["map", rules, "--x", HOSTILE], true),
-        (vec!["eval", rules, points], true),
         (vec!["learn", rules, rows, "-o", out], true),
         (vec!["new", HOSTILE], true),
         (vec![HOSTILE], true),
@@ -112,10 +107,6 @@ fn no_cell_of_a_table_is_a_formula() {
             .replace(",1\n", ",1,-3\n")
             .replace(",0\n", ",0,-3\n"),
     );
-    let points = &folder.file(
-        "points.csv",
-        format!("margin,spread,-name\n0.1,0.1,{formula}\n0.1,0.1,-2.5\n"),
-    );
     let table = &folder.file(
         "table.csv",
         format!("att_rmse_deg,margin_mean,c_mean,c_std,vehicle,kind\n1,0.3,0.5,0.05,{formula},@SUM(A1)\n"),
@@ -127,9 +118,6 @@ fn no_cell_of_a_table_is_a_formula() {
         ),
         (vec!["convert", log, "-o", "-"], ",'+signal\n"),
         (vec!["dataset", table], ",'=HYPERLINK(0),'@SUM(A1),"),
-        (vec!["eval", RULES, points], ",'=HYPERLINK(0),"),
-        (vec!["eval", RULES, points], ",-2.5,"),
-        (vec!["eval", RULES, points], ",'-name,"),
     ] {
         let said = said(&arguments);
         assert!(

@@ -78,6 +78,13 @@ impl<'a> CheckDocument<'a> {
             alone: Some(alone),
         }
     }
+
+    /// Adds the findings that the author accepts.
+    #[must_use]
+    pub fn with_accepted(mut self, accepted: Vec<check::AcceptedFindings>) -> CheckDocument<'a> {
+        self.accepted = accepted;
+        self
+    }
 }
 
 /// An explanation of the outputs at a point: `flagred explain --json`.

@@ -9,11 +9,11 @@ use fuzzy::{
 };
 use sha2::{Digest as _, Sha256};
 
-use crate::{Edit, edited, numbers, rewrite::head};
+use crate::{Edit, edited, layout::formatted, numbers, rewrite::head};
 
 /// The text of a rule set that a command created, with the step that describes how. If only numbers differ from the
 /// original text, they are changed in that text. Otherwise the rule set is written anew, below the comments at the top
-/// of that text.
+/// of that text, in the layout of `flagred fmt`.
 ///
 /// # Errors
 /// If the text would not be read back as this rule set, for example because of a number that is not finite.
@@ -28,9 +28,13 @@ pub fn rule_set(
     };
     model.provenance.push(step);
     if let Some(text) = in_place(begun_with, &model) {
-        return Ok(text);
+        let was_formatted = formatted(begun_with).is_ok_and(|text| text == begun_with);
+        return Ok(match was_formatted {
+            true => laid_out(text),
+            false => text,
+        });
     }
-    let text = head(begun_with) + &fuzzy::yaml::to_string(&model);
+    let text = laid_out(head(begun_with) + &fuzzy::yaml::to_string(&model));
     match fuzzy::yaml::parse(&text)?.model == model {
         true => Ok(text),
         false => {
@@ -39,6 +43,11 @@ pub fn rule_set(
             Err(Findings::locate(vec![finding], &text))
         }
     }
+}
+
+/// A text in the layout of `flagred fmt`, if it can be formatted.
+fn laid_out(text: String) -> String {
+    formatted(&text).unwrap_or(text)
 }
 
 /// Replaces the numbers and the last step in a text by those of a rule set; `None` if anything else

@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     range: RangeArgument,
 
-    /// Print a JSON document instead of text
+    /// Print a JSON document instead of text; for several logs, an array
     #[arg(long, conflicts_with = "csv")]
     json: bool,
 
@@ -50,11 +50,11 @@ pub(crate) struct Arguments {
     #[arg(short, long, conflicts_with_all = ["json", "csv"])]
     verbose: bool,
 
-    /// Also write a report to this file: one HTML page that opens offline; for several logs, a comparison
+    /// Also write a report to this file, one HTML page that opens offline; for several logs, a comparison; `-` is standard output
     #[arg(long, value_name = "FILE", value_parser = output::html_path)]
     html: Option<PathBuf>,
 
-    /// Also write an SVG picture of the risk over time to this file
+    /// Also write an SVG picture of the risk over time to this file; `-` is standard output
     #[arg(long, value_name = "FILE", value_parser = output::svg_path)]
     svg: Option<PathBuf>,
 

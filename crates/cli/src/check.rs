@@ -14,7 +14,8 @@ use flagred::{
 };
 use flagred_authoring::{Examination, answers::CheckDocument, is_profile, provenance};
 use fuzzy::{
-    Source, check,
+    Source,
+    check::{self, AcceptedFindings},
     diagnostic::{Findings, Severity},
     drawing::{number, visible},
 };
@@ -37,13 +38,13 @@ pub(crate) struct Arguments {
     /// How to print the findings
     #[arg(long, value_enum, default_value = "text", value_name = "FORMAT")]
     format: Format,
-    /// The same as `--format json`
+    /// Print JSON documents instead of text, one for each file; the same as `--format json`
     #[arg(long, conflicts_with = "format")]
     json: bool,
     #[command(flatten)]
     claims: rows::OutputClaims,
-    /// Warn where no rule fires with at least this strength
-    #[arg(long, value_name = "DEGREE", default_value_t = 0.5, value_parser = numbers::degree_above_0)]
+    /// Warn where the coverage, the largest firing strength of a rule, is below this value from 0 to 1
+    #[arg(long, value_name = "STRENGTH", default_value_t = 0.5, value_parser = numbers::degree_above_0)]
     coverage: f64,
     /// Also exit with 1 for findings of this severity [default: only for errors]
     #[arg(long, value_name = "SEVERITY")]
@@ -85,12 +86,17 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
         let file = path.display().to_string();
         let source = flagred_interchange::source(text);
         let text = source.text();
-        let (of_profile, examined) = if is_profile(&source) {
-            let (profile, findings, alone) = examine_profile(path, &source)?;
+        let (of_profile, examined, accepted) = if is_profile(&source) {
+            arguments.claims.about_rule_sets(path)?;
+            let examined = examine_profile(path, &source)?;
+            let (profile, findings, alone, accepted) = examined;
             let analysed = None;
-            (Some((profile, alone)), Examination { findings, analysed })
+            let examined = Examination { findings, analysed };
+            (Some((profile, alone)), examined, accepted)
         } else {
-            (None, examine(&source, arguments)?)
+            let examined = examine(&source, arguments)?;
+            let accepted = examined.accepted();
+            (None, examined, accepted)
         };
         let findings = &examined.findings;
         // Only text for people is coloured.
@@ -109,13 +115,19 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
                     let made = visible(&provenance::words(step)).to_string();
                     writeln!(out, "{}: made by {made}", visible(&file))?;
                 }
-                for one in examined.accepted() {
+                // An entry that accepts nothing is a finding itself.
+                for one in accepted.iter().filter(|one| one.count > 0) {
                     let (code, because) = (visible(&one.finding), visible(&one.because));
-                    let count = one.count;
+                    let of = one
+                        .of
+                        .as_deref()
+                        .map_or(String::new(), |of| format!(" of `{of}`"));
                     writeln!(
                         out,
-                        "{}: {count} x `{code}` accepted: {because}",
-                        visible(&file)
+                        "{}: {} x `{code}`{} accepted: {because}",
+                        visible(&file),
+                        one.count,
+                        visible(&of)
                     )?;
                 }
                 if let Some((profile, alone)) = &of_profile {
@@ -136,9 +148,11 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
                     Some((profile, alone)) => {
                         let name = profile.as_ref().map(|profile| profile.name.as_str());
                         CheckDocument::profile(&file, name, &findings.0, alone)
+                            .with_accepted(accepted)
                     }
                     None => CheckDocument::rules(&file, &examined),
                 };
+
                 serde_json::to_writer_pretty(&mut out, &json).map_err(std::io::Error::from)?;
                 writeln!(out)?;
             }
@@ -147,7 +161,8 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
         }
         out.finish()?;
         let worst = findings.0.iter().map(|finding| finding.severity).max();
-        if worst > worst_allowed {
+        let violates_claim = findings.0.iter().any(|one| one.code == "not-monotone");
+        if worst > worst_allowed || violates_claim {
             exit = Exit::Findings;
         }
     }
@@ -170,15 +185,20 @@ fn examine<'s>(source: &'s Source, arguments: &Arguments) -> Result<Examination<
     })
 }
 
-/// Reads a profile. Returns all findings about it and its rule set, and the highest risk that each of its inputs causes
-/// while all other inputs are calm. A rule set with errors is refused, because its errors are in another file.
-fn examine_profile(
-    path: &Path,
-    source: &Source,
-) -> Result<(Option<Profile>, Findings, Vec<OutvotedInput>), Failure> {
+/// A profile, all findings about it and its rule set, the highest risk that each of its inputs causes while all other inputs
+/// are calm, and the findings that the author accepts.
+type ExaminedProfile = (
+    Option<Profile>,
+    Findings,
+    Vec<OutvotedInput>,
+    Vec<AcceptedFindings>,
+);
+
+/// Reads a profile. A rule set with errors is refused, because its errors are in another file.
+fn examine_profile(path: &Path, source: &Source) -> Result<ExaminedProfile, Failure> {
     let profile = match Profile::from_source(source) {
         Ok(profile) => profile,
-        Err(findings) => return Ok((None, findings, Vec::new())),
+        Err(findings) => return Ok((None, findings, Vec::new(), Vec::new())),
     };
     let is_file = path != Path::new("-") && built_in::profile_at(path).is_none();
     let folder = is_file.then(|| path.parent()).flatten();
@@ -186,7 +206,8 @@ fn examine_profile(
     let rules = profile::rule_set(&profile, (&file, source), folder)?;
     let (findings, estimator) = profile::examine(source, &rules);
     let alone = estimator.as_ref().map(alone).unwrap_or_default();
-    Ok((Some(profile), findings, alone))
+    let accepted = profile::accepted(source, &rules);
+    Ok((Some(profile), findings, alone, accepted))
 }
 
 /// A line for each input: `battery  0 (empty)  battery_risk 95 %, FAIL`.

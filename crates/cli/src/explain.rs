@@ -17,7 +17,7 @@ use crate::{
     failure::{Exit, Failure},
     output::{self, Files, print},
     rule_set,
-    table::{Format, is_table},
+    table::{Format, Suffix, is_table},
 };
 
 #[derive(clap::Args)]
@@ -28,10 +28,11 @@ pub(crate) struct Arguments {
     /// A value for each input: `margin=0.07`
     #[arg(value_name = "INPUT=VALUE")]
     inputs: Vec<String>,
-    /// Explain each row of this table: print it with the value, the dominant rule and the shares of the rules for each output
-    #[arg(long, alias = "csv", value_name = "POINTS.csv", conflicts_with_all = ["inputs", "json", "svg"])]
+    /// Explain each row of this table: print it with the value, the dominant rule and the shares of the rules for each output.
+    /// `--suffix`, `--column`, `--delimiter` and `--skip-bad-rows` describe this table
+    #[arg(long, alias = "csv", value_name = "TABLE.csv", conflicts_with_all = ["inputs", "json", "svg"])]
     rows: Option<PathBuf>,
-    /// The file to write, replaced if it exists [default: standard output]
+    /// The file to write, replaced if it exists; `-` is standard output [default: -]
     #[arg(short, long, value_name = "FILE", value_parser = output::text_path)]
     output: Option<PathBuf>,
     /// Print a JSON document instead of text
@@ -40,6 +41,8 @@ pub(crate) struct Arguments {
     /// Write an SVG picture of terms, rules and results to this file instead of text; `-` is standard output
     #[arg(long, value_name = "FILE", conflicts_with_all = ["json", "output"], value_parser = output::svg_path)]
     svg: Option<PathBuf>,
+    #[command(flatten)]
+    suffix: Suffix,
     #[command(flatten)]
     format: Format,
 }
@@ -144,15 +147,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         );
         return Err(Failure::usage(message).help("`--rows` writes tables"));
     }
-    if let (None, Some(option)) = (&arguments.rows, arguments.format.given()) {
+    let given = arguments.format.given().or(arguments.suffix.given());
+    if let (None, Some(option)) = (&arguments.rows, given) {
         let failure = Failure::usage(format!("`{option}` needs a table"));
         return Err(failure.help("name a table with `--rows`, or leave the option out"));
     }
     if let Some(points) = &arguments.rows {
-        print(
-            output.as_ref(),
-            &table::explained(&engine, points, &arguments.format)?,
-        )?;
+        table::explain(&engine, points, arguments, output.as_ref())?;
         return Ok(Exit::Clean);
     }
     let given = arguments.inputs.iter();

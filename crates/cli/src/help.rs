@@ -29,17 +29,21 @@ Examples:
   flagred assess --csv --step 1 flight.tlog.gz
   flagred assess --fail-on fail *.bin
   flagred assess --profile flagred-paper flight.bin
-  flagred assess --profile my-profile.yaml flight.csv";
+  flagred assess --profile my-profile.yaml flight.csv
+
+Exit code 1: a flight has the verdict of --fail-on or a worse one. Exit code 3: a log cannot be read or has no verdict.";
 
 pub(crate) const CHECK: &str = "\
 Examples:
   flagred check my-rules.yaml
-  flagred check my-rules.yaml --rising temperature   the output must not fall
+  flagred check my-rules.yaml --rising temperature   exit code 1 if the output falls
   flagred check --deny warnings rules/*.yaml
   flagred check my-profile.yaml                  a profile with its rule set
   flagred check --format json my-rules.yaml
   flagred check --format sarif rules/*.yaml      for code scanning
-  flagred check --format github rules/*.yaml     annotations on GitHub";
+  flagred check --format github rules/*.yaml     annotations on GitHub
+
+Exit code 1: there is an error or a finding of --deny, or an output violates --rising or --falling.";
 
 pub(crate) const CONVERT: &str = "\
 Examples:
@@ -62,6 +66,7 @@ Examples:
   flagred eval my-rules.yaml measured.csv --suffix _model --output compared.csv     with the errors
   flagred eval my-rules.yaml                     points from standard input
 
+With --suffix, the outputs are also compared with measured values in columns of their names: RMS error, mean error, worst rows.
 Exit code 1: a row has no value. Empty cells, NA and NaN are unknown values.";
 
 pub(crate) const VALIDATE: &str = "\
@@ -86,7 +91,7 @@ Examples:
   flagred export --fis my-rules.yaml --output my-rules.fis
 
 `--fis`, `--fll`, `--fcl` and `--fml` write a rule set for MATLAB, fuzzylite, jFuzzyLogic and JFML. What the
-format cannot express is an error; `--lossy` drops it with a warning, except for terms that rules need.";
+format cannot express is an error. With `--lossy` it is left out with a warning; a term that rules need remains an error.";
 
 pub(crate) const IMPORT: &str = "\
 Examples:
@@ -131,6 +136,7 @@ Examples:
   flagred learn my-rules.yaml rows.csv --compare-gaps --output learned.yaml
   flagred check learned.yaml                     the gaps of the learned rules
 
+Cross-validation has 10 folds, or a fold for each of up to 50 groups of --group-by.
 Exit code 1: the output violates --rising or --falling.";
 
 pub(crate) const TUNE: &str = "\
@@ -139,6 +145,7 @@ Examples:
   flagred tune my-rules.yaml rows.csv --round 2 --svg moved.svg --output tuned.yaml
   flagred tune my-rules.yaml rows.csv --only heat --fix heat.hot --rising heat --output tuned.yaml
   flagred tune my-rules.yaml rows.csv --loss ranking --column risk=failed --group-by vehicle --rule-weights --output tuned.yaml
+
 Ctrl-C ends the search and writes the best rule set so far.";
 
 pub(crate) const SIMPLIFY: &str = "\
@@ -158,8 +165,9 @@ Examples:
   flagred map my-rules.yaml --values             numbers, a table for each slice
   flagred map my-rules.yaml --csv -o my-rules.map.csv
   flagred map my-rules.yaml --check my-rules.map.csv     in a test: exit code 1 if an output differs
+  flagred map my-rules.yaml --check compared.csv --suffix _model     a table of `eval --suffix _model`
 
-docs/ci.md shows how to use the last two in CI.";
+docs/ci.md shows how to use --csv and --check in CI.";
 
 pub(crate) const PLOT: &str = "\
 Examples:
@@ -205,7 +213,9 @@ Examples:
   flagred watch tcp:127.0.0.1:5760               a simulator
   flagred watch /dev/ttyACM0:57600               a telemetry radio
   flagred watch udpin:0.0.0.0:14550 --no-send --record flight.tlog
-  flagred watch udpin:0.0.0.0:14550 --jsonl      JSON lines, for another program";
+  flagred watch udpin:0.0.0.0:14550 --jsonl      JSON lines, for another program
+
+Exit code 1: a flight was WARN or FAIL. Exit code 3: there is no verdict.";
 
 #[cfg(test)]
 mod tests {

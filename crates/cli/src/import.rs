@@ -16,7 +16,7 @@ pub(crate) struct Arguments {
     /// Rule set in FIS, FLL, FCL or FML, recognised by its content; `-` is standard input
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// The file to write [default: standard output]
+    /// The file to write; `-` is standard output [default: -]
     #[arg(short, long, value_name = "OUT.yaml", default_value = "-", hide_default_value = true, value_parser = output::rules_path)]
     output: PathBuf,
     /// Replace the file if it exists

@@ -1,4 +1,4 @@
-//! Output that `identify` and `tune` share: used and refused rows, and cross-validation errors.
+//! Output that `identify`, `learn` and `tune` share: used and refused rows, and cross-validation errors.
 
 use std::io::Write;
 
@@ -7,7 +7,7 @@ use fuzzy::drawing::{short, visible};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// Maximum number of reasons for refused rows that are shown.
+/// Maximum number of items of a list that are shown.
 const SHOWN: usize = 12;
 
 /// Formats a number of folds: `5 folds`.
@@ -21,10 +21,25 @@ pub(crate) fn folds(count: usize) -> String {
 /// Writes how many rows were used, and why others were refused.
 pub(crate) fn rows(out: &mut dyn Write, used: usize, refused: &[String]) -> std::io::Result<()> {
     writeln!(out, "rows        {used} used, {} refused", refused.len())?;
-    for refused in refused.iter().take(SHOWN) {
-        writeln!(out, "            {}", visible(refused))?;
+    listed(out, 12, refused, refused.len())
+}
+
+/// Writes the first of `count` items, each on a line with an indentation, and how many more there are.
+pub(crate) fn listed(
+    out: &mut dyn Write,
+    indent: usize,
+    items: &[impl ToString],
+    count: usize,
+) -> std::io::Result<()> {
+    let shown = items.iter().take(SHOWN);
+    let more = count.saturating_sub(shown.len());
+    for item in shown {
+        writeln!(out, "{:indent$}{}", "", visible(&item.to_string()))?;
     }
-    Ok(())
+    match more {
+        0 => Ok(()),
+        more => writeln!(out, "{:indent$}and {more} more", ""),
+    }
 }
 
 /// Formats a value with its interval: `2.9 [2.6, 3.2]`.

@@ -15,7 +15,7 @@ use crate::{
     path::CHECK,
 };
 
-pub(crate) use flagred::loaded::{Loaded, examine};
+pub(crate) use flagred::loaded::{Loaded, accepted, examine};
 
 /// The profile that is used by default.
 pub(crate) const DEFAULT: &str = "flagred";

@@ -37,7 +37,7 @@ pub(crate) struct Rewrite {
     #[command(flatten)]
     pub(crate) format: Format,
 
-    /// Print the report as a JSON document
+    /// Print a JSON document instead of text
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -49,18 +49,17 @@ pub(crate) struct DerivationArguments {
     pub(crate) rewrite: Rewrite,
 
     /// Tables with a column for each input and the output, as `flagred dataset` writes them
-    #[arg(required = true, value_name = "DATA.csv")]
+    #[arg(required = true, value_name = "TABLE.csv")]
     pub(crate) data: Vec<PathBuf>,
 
     #[command(flatten)]
     pub(crate) claims: OutputClaims,
 
-    /// The column with the weights of the rows
+    /// The column with the weights of the rows. Rows of weight 0 do not count in `identify` and `tune`; `learn` refuses them
     #[arg(long, value_name = "COLUMN")]
     weight: Option<String>,
 
-    /// In cross-validation, keep all rows with the same value of this column in the same fold:
-    /// `vehicle`
+    /// Keep all rows with the same value of this column, such as `vehicle`, in the same fold of cross-validation
     #[arg(long, value_name = "COLUMN")]
     pub(crate) group_by: Option<String>,
 
@@ -68,7 +67,7 @@ pub(crate) struct DerivationArguments {
     #[arg(long, conflicts_with = "group_by")]
     pub(crate) no_validation: bool,
 
-    /// Clamp values outside the range of their input or output to it, as `eval` does with inputs
+    /// Clamp inputs outside their range to it, as `eval` does; `learn` also clamps the output
     #[arg(long)]
     clamp: bool,
 }
@@ -153,6 +152,20 @@ impl OutputClaims {
         ))
     }
 
+    /// Returns an error if there are claims: the file is a profile, and claims are about rule sets.
+    pub(crate) fn about_rule_sets(&self, profile: &Path) -> Result<(), Failure> {
+        let option = match self.rising.is_empty() {
+            _ if self.is_empty() => return Ok(()),
+            true => "--falling",
+            false => "--rising",
+        };
+        let message = format!(
+            "`{option}` is about a rule set, and `{}` is a profile",
+            profile.display()
+        );
+        Err(Failure::usage(message).help("check the rule set that the profile names under `rules`"))
+    }
+
     /// Returns an error for claims about inputs that the rule set does not have.
     pub(crate) fn check_inputs(&self, model: &Model) -> Result<(), Failure> {
         let names = || model.inputs.iter().map(|input| input.name.as_str());
@@ -215,8 +228,20 @@ pub(crate) struct Data {
     pub(crate) refused: Vec<String>,
 }
 
+/// The variables whose values `--clamp` clamps.
+#[derive(Clone, Copy)]
+pub(crate) enum Clamped {
+    Inputs,
+    /// The inputs and the output.
+    All,
+}
+
 /// Reads the values of the inputs and of the measured output of a model from all tables.
-pub(crate) fn read(arguments: &DerivationArguments, model: &Model) -> Result<Data, Failure> {
+pub(crate) fn read(
+    arguments: &DerivationArguments,
+    model: &Model,
+    clamped: Clamped,
+) -> Result<Data, Failure> {
     let variables: Vec<&Variable> = model.measured_variables().collect();
     let names: Vec<&str> = variables.iter().map(|v| v.name.as_str()).collect();
     let optional = [&arguments.weight, &arguments.group_by].map(Option::as_deref);
@@ -240,7 +265,13 @@ pub(crate) fn read(arguments: &DerivationArguments, model: &Model) -> Result<Dat
         }
     }
     if arguments.clamp {
-        clamp(&mut data, &variables);
+        clamp(
+            &mut data,
+            match clamped {
+                Clamped::All => &variables,
+                Clamped::Inputs => variables.get(..model.inputs.len()).unwrap_or_default(),
+            },
+        );
     }
     Ok(data)
 }
@@ -288,7 +319,7 @@ pub(crate) fn tables<'a>(
     paths: &'a [PathBuf],
     format: &'a Format,
 ) -> impl Iterator<Item = Result<Table, Failure>> + 'a {
-    paths.iter().map(|path| Table::read(path, format.delimiter))
+    paths.iter().map(|path| Table::read_with(path, format))
 }
 
 /// Reads the values of variables from all tables, and the columns with the weights and the groups of the rows. `labels` are words
@@ -307,8 +338,9 @@ pub(crate) fn columns(
     };
     let mut groups: BTreeMap<String, u32> = BTreeMap::new();
     for table in tables {
-        let table = table?;
-        let columns = format.columns(names, &table.header)?;
+        let mut table = table?;
+        data.refused.append(&mut table.skipped);
+        let columns = format.layout.columns(names, &table.header)?;
         let optional = |name: Option<&str>| {
             name.map(|name| table.header.require(name, "leave that option out"))
                 .transpose()
@@ -471,24 +503,28 @@ pub(crate) fn refuse(refused: &[String], rows: usize, purpose: &str) -> Failure 
             "{outside} of {rows} rows are outside a range, so their unit is probably another one: convert the values, or correct the `range` in the rule set"
         ));
     }
-    let skip = (count < rows).then_some(", leave them out with `--skip-bad-rows`");
-    let clamp = (outside > 0).then_some(", clamp values outside a range with `--clamp`");
-    failure.help(format!(
-        "correct or remove these rows{}{}",
-        skip.unwrap_or_default(),
-        clamp.unwrap_or_default()
-    ))
+    failure.help(match (count < rows, outside > 0) {
+        (false, false) => "correct or remove these rows",
+        (true, false) => "correct or remove these rows, or leave them out with `--skip-bad-rows`",
+        (false, true) => {
+            "correct or remove these rows, or clamp values outside a range with `--clamp`"
+        }
+        (true, true) => {
+            "correct or remove these rows, leave them out with `--skip-bad-rows`, or clamp values outside a range with `--clamp`"
+        }
+    })
 }
 
 /// Returns the kind of a row's problem: the message without position, numbers and quoted texts, but with the name of the
-/// column.
+/// column or variable.
 fn kind(why: &str) -> String {
     let (_, problem) = why.split_once(", line ").unwrap_or(("", why));
     let mut kind = String::new();
     for (i, part) in problem.split('`').enumerate() {
         if i % 2 == 0 {
-            kind.extend(part.chars().filter(|c| !c.is_ascii_digit()));
-        } else if kind.ends_with("column ") {
+            let is_number = |c: &char| c.is_ascii_digit() || matches!(c, '.' | '-');
+            kind.extend(part.chars().filter(|c| !is_number(c)));
+        } else if kind.ends_with("column ") || kind == ": " {
             kind.push_str(part);
         }
     }

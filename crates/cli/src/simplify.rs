@@ -24,14 +24,14 @@ pub(crate) struct Arguments {
     rewrite: rows::Rewrite,
 
     /// Tables with a column for each input: the outputs are also compared at their rows
-    #[arg(value_name = "DATA.csv")]
+    #[arg(value_name = "TABLE.csv")]
     data: Vec<PathBuf>,
 
     /// Largest accepted difference of an output, in its unit [default: 1e-12 of its range]
     #[arg(long, value_name = "VALUE", value_parser = numbers::at_least_0)]
     tolerance: Option<f64>,
 
-    /// Compare outputs only at the rows of DATA; elsewhere they may differ by any amount
+    /// Compare outputs only at the rows of the tables; elsewhere they may differ by any amount
     #[arg(long, requires = "data")]
     rows_only: bool,
 

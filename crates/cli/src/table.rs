@@ -89,9 +89,9 @@ impl Reader {
     }
 }
 
-/// Options for reading a table.
+/// The columns of a table, and the character between them.
 #[derive(clap::Args)]
-pub(crate) struct Format {
+pub(crate) struct Layout {
     /// Read a variable from a column of another name: `margin=margin_mean`; may be repeated
     #[arg(long, value_name = "NAME=COLUMN", value_parser = pair)]
     column: Vec<(String, String)>,
@@ -99,10 +99,30 @@ pub(crate) struct Format {
     /// The character between cells: `;`, `tab`
     #[arg(long, value_name = "CHARACTER", default_value = ",", value_parser = delimiter)]
     pub(crate) delimiter: u8,
+}
 
-    /// Skip rows that cannot be used
+/// Options for reading a table.
+#[derive(clap::Args)]
+pub(crate) struct Format {
+    #[command(flatten)]
+    pub(crate) layout: Layout,
+
+    /// Skip rows that cannot be parsed. For rules from data, also skip rows whose values are unknown or outside their range
     #[arg(long)]
     pub(crate) skip_bad_rows: bool,
+}
+
+/// The suffix of columns that contain outputs.
+#[derive(clap::Args)]
+pub(crate) struct Suffix {
+    /// Suffix of the columns of the outputs, such as `_model`; needed if a column of the table has the name of an output
+    #[arg(
+        long,
+        value_name = "SUFFIX",
+        default_value = "",
+        hide_default_value = true
+    )]
+    pub(crate) suffix: String,
 }
 
 pub(crate) fn pair(text: &str) -> Result<(String, String), String> {
@@ -160,10 +180,24 @@ pub(crate) fn rule_set_first(
 impl Format {
     /// The first of these options that differs from its default.
     pub(crate) fn given(&self) -> Option<&'static str> {
+        let skip = self.skip_bad_rows.then_some("--skip-bad-rows");
+        self.layout.given().or(skip)
+    }
+}
+
+impl Suffix {
+    /// This option if it differs from its default.
+    pub(crate) fn given(&self) -> Option<&'static str> {
+        (!self.suffix.is_empty()).then_some("--suffix")
+    }
+}
+
+impl Layout {
+    /// The first of these options that differs from its default.
+    pub(crate) fn given(&self) -> Option<&'static str> {
         let column = (!self.column.is_empty()).then_some("--column");
         let delimiter = (self.delimiter != b',').then_some("--delimiter");
-        let skip = self.skip_bad_rows.then_some("--skip-bad-rows");
-        column.or(delimiter).or(skip)
+        column.or(delimiter)
     }
 
     /// Returns the column index of each variable.
@@ -250,6 +284,8 @@ pub(crate) fn open(path: &Path, delimiter: u8) -> Result<(Header, Reader), Failu
 pub(crate) struct Table {
     pub(crate) header: Header,
     records: Vec<(u64, csv::StringRecord)>,
+    /// Position and problem of rows that were skipped, since their number of cells is not that of the header.
+    pub(crate) skipped: Vec<String>,
 }
 
 /// A cell that is not a finite number.
@@ -262,11 +298,22 @@ pub(crate) struct BadCell {
 impl Table {
     /// Reads a whole file; `-` is standard input.
     pub(crate) fn read(path: &Path, delimiter: u8) -> Result<Table, Failure> {
+        Table::read_rows(path, delimiter, None)
+    }
+
+    /// Reads a whole file; `-` is standard input. `--skip-bad-rows` also skips rows with too few or too many cells.
+    pub(crate) fn read_with(path: &Path, format: &Format) -> Result<Table, Failure> {
+        Table::read_rows(path, format.layout.delimiter, Some(format.skip_bad_rows))
+    }
+
+    /// `skip` is the value of `--skip-bad-rows`, if the command has this option.
+    fn read_rows(path: &Path, delimiter: u8, skip: Option<bool>) -> Result<Table, Failure> {
         let (header, mut reader) = open(path, delimiter)?;
         let file = &header.file;
         let mut records = Vec::new();
         let mut record = csv::StringRecord::new();
         let mut cells = 0;
+        let mut skipped = Vec::new();
         while reader
             .read_record(&mut record)
             .map_err(|error| broken(file, &error))?
@@ -278,10 +325,28 @@ impl Table {
             }
             let line = record.position().map_or(0, csv::Position::line);
             if let Some((misfit, is_count)) = header.misfit(record.as_byte_record()) {
-                let failure = Failure::unreadable(format!("`{file}`, line {line}: {misfit}"));
-                return Err(failure.help_if(is_count.then(|| header.misfit_help())));
+                let text = format!("`{file}`, line {line}: {misfit}");
+                if !is_count {
+                    return Err(Failure::unreadable(text));
+                }
+                skipped.push(text);
+                if skip == Some(true) {
+                    continue;
+                }
+                break;
             }
             records.push((line, record.clone()));
+        }
+        if let Some(first) = skipped.first()
+            && (skip != Some(true) || records.is_empty())
+        {
+            let help = header.misfit_help();
+            return Err(Failure::unreadable(first).help(match skip {
+                Some(false) if header.other_delimiter().is_none() => {
+                    format!("{help}; or leave such rows out with `--skip-bad-rows`")
+                }
+                _ => help,
+            }));
         }
         if records.is_empty() {
             return Err(
@@ -289,7 +354,11 @@ impl Table {
                     .help("write the rows below the header"),
             );
         }
-        Ok(Table { header, records })
+        Ok(Table {
+            header,
+            records,
+            skipped,
+        })
     }
 
     /// The number of rows.
@@ -302,13 +371,17 @@ impl Table {
         self.records.get(row).map_or(0, |(line, _)| *line)
     }
 
-    /// The text of a cell.
+    /// The text of a cell, without surrounding spaces.
     pub(crate) fn text(&self, row: usize, column: usize) -> &str {
+        self.cell(row, column).trim()
+    }
+
+    /// A cell as it is.
+    pub(crate) fn cell(&self, row: usize, column: usize) -> &str {
         let record = self.records.get(row).map(|(_, record)| record);
         record
             .and_then(|record| record.get(column))
-            .unwrap_or("")
-            .trim()
+            .unwrap_or_default()
     }
 
     /// Returns the finite number in a cell.

@@ -23,14 +23,14 @@ use crate::{
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Flight logs with attitude (ArduPilot, PX4, tlog, flight CSV; plain or gzipped), and folders of them
-    #[arg(required_unless_present = "rows", value_name = "FLIGHT")]
+    #[arg(required_unless_present = "rows", value_name = "LOG")]
     flights: Vec<PathBuf>,
 
     /// Validate on this table instead of logs: a row for each flight, as `flagred dataset --profile NAME` writes it
-    #[arg(long, value_name = "DATA.csv", conflicts_with = "flights")]
+    #[arg(long, value_name = "TABLE.csv", conflicts_with = "flights")]
     rows: Option<PathBuf>,
 
-    /// Another profile to compare: the name of a built-in one, or a file; may be repeated
+    /// A further profile to compare with `flagred` and `flagred-paper`: the name of a built-in one, or a file; may be repeated
     #[arg(long = "profile", value_name = "NAME|FILE")]
     profiles: Vec<String>,
 
@@ -42,7 +42,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     json: bool,
 
-    /// Also write an SVG picture of the ROC curves and the reliability to this file
+    /// Also write an SVG picture of the ROC curves and the reliability to this file; `-` is standard output
     #[arg(long, value_name = "FILE", value_parser = output::svg_path)]
     svg: Option<PathBuf>,
 }

@@ -117,7 +117,7 @@ blocks: {only: {rules: [IF heat IS low THEN speed IS slow]}}
         folder.path(),
         &["learn", "fan.yaml", "data.csv", "-o", "new.yaml"],
     );
-    assert_eq!(code, Some(2), "{errors}");
+    assert_eq!(code, Some(3), "{errors}");
     assert!(
         errors.contains("the rule set has rule blocks, with which rules cannot be learned"),
         "{errors}"

@@ -52,7 +52,7 @@ fn check_verifies_claims_about_outputs() {
         "margin",
     ];
     let (output, text) = flagred(&claims, "");
-    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(output.status.code(), Some(1));
     let json: serde_json::Value = serde_json::from_str(&text).unwrap();
     assert_eq!(json["schema"], "flagred.check/1");
     let worst = &json["report"]["counterexamples"][0];
@@ -69,6 +69,14 @@ fn check_verifies_claims_about_outputs() {
     let (output, _) = flagred(&["check", "flagred-paper.yaml", "--rising", "wind"], "");
     assert_eq!(output.status.code(), Some(2));
     assert!(errors(&output).contains("there are `margin` and `spread`"));
+
+    let (output, _) = flagred(&["check", "tipper.yaml", "--rising", "food"], "");
+    assert_eq!(output.status.code(), Some(0));
+    let (output, _) = flagred(&["check", "flagred", "--falling", "margin"], "");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        errors(&output).contains("`--falling` is about a rule set, and `flagred` is a profile")
+    );
 }
 
 #[test]

@@ -140,7 +140,7 @@ impl Gap {
                     "let the ground station load all parameters while it records, or use the log on the vehicle"
                 }
                 Csv => {
-                    "name the columns of the motors pwm1.. (us) or motor1.. (0 to 1), in lower-case letters; a profile that reads no motor needs none"
+                    "name the columns of the motors pwm1.. (us) or motor1.. (0 to 1), in lower-case letters; to assess a flight with a profile that reads no motor, they are not needed"
                 }
             },
             Self::NoCommands {

@@ -196,8 +196,8 @@ pub fn write(model: &Model, format: Format, losses: Losses) -> Result<WriteResul
     if !invalid.is_empty() {
         return Err(Findings(invalid));
     }
-    if model.has_type2_terms() {
-        let message = format!("type-2 terms cannot be written as {} yet", format.name());
+    if model.has_type2_terms() && format != Format::Fis {
+        let message = format!("{} has no type-2 terms", format.name());
         let help = "remove the keys that make terms type-2, such as `blur` or `lower`, or keep the rule set in YAML";
         let finding = Diagnostic::error("type-2-terms", 0..0, message).help(help);
         return Err(Findings(vec![finding]));

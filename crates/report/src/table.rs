@@ -21,14 +21,6 @@ pub fn cell(text: &str) -> Cow<'_, str> {
     }
 }
 
-/// A cell copied from another table: a number is not changed.
-pub fn number_or_cell(text: &str) -> Cow<'_, str> {
-    match text.trim().parse::<f64>() {
-        Ok(_) => Cow::Borrowed(text),
-        Err(_) => cell(text),
-    }
-}
-
 /// Writes a flight as flight CSV, with hidden characters in its texts made visible.
 ///
 /// # Errors
@@ -72,10 +64,6 @@ mod tests {
             ("a\u{1b}[2J", "a\\u{1b}[2J"),
         ] {
             assert_eq!(cell(text), written);
-            assert_eq!(number_or_cell(text), written);
-        }
-        for number in ["-2.5", "+1e3", " -7 ", "0.1", "-inf"] {
-            assert_eq!(number_or_cell(number), number);
         }
     }
 }

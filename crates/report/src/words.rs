@@ -7,6 +7,7 @@ use flagred::{
     estimator::Estimator,
     flight::{Assessment, Peak, Summary, Verdict},
     profile::{Followed, Profile},
+    shipped,
     verdict::Level,
 };
 use flagred_flightlog::Flight;
@@ -63,11 +64,12 @@ pub fn write(
             assessed.summary.in_air_s,
             first_spans(when)
         );
-        if verbose {
-            if let Some(rate_hz) = flight.command_rate_hz() {
-                text += &format!(", motors at {rate_hz:.1} Hz");
-            }
-            text += &format!("; profile {}", estimator.profile().name);
+        if let Some(rate_hz) = flight.command_rate_hz().filter(|_| verbose) {
+            text += &format!(", motors at {rate_hz:.1} Hz");
+        }
+        let profile = &estimator.profile().name;
+        if verbose || *profile != shipped::PROFILES[0].name {
+            text += &format!("; profile {}", visible(profile));
         }
         indented(out, &text)?;
     }

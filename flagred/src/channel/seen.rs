@@ -270,6 +270,8 @@ pub(crate) fn value(
 /// The value of an input, and the number and duration of the samples that it was computed from.
 ///
 /// # Example: one second of samples in a window of five seconds
+/// ```
+/// use flagred::{monitor::Craft, source::{Motors, Observation, Observer, Signal, Source, Statistic}};
 ///
 /// let load = Source { statistic: Statistic::Mean, motors: Motors::Pooled, signal: Signal::MotorCommand, window_s: 5.0, exponential: false };
 /// let mut observer = Observer::new([&load], Craft::new(4))?;

@@ -11,7 +11,7 @@ use fuzzy::{
     model::{MembershipFunction, Role, Variable},
 };
 
-use super::{ValuePositions, is_above, shown};
+use super::{OUTVOTED, ValuePositions, is_above, shown};
 use crate::{
     estimator::{Estimator, Memory},
     profile::{Profile, ProfileInput},
@@ -39,6 +39,8 @@ pub struct OutvotedInput {
     pub risk_output: String,
     /// That risk in %.
     pub risk_pct: f64,
+    /// The risk while all inputs are calm, in %.
+    pub calm_risk_pct: f64,
     /// The level that this risk raises if it is constant.
     pub level: Level,
 }
@@ -89,7 +91,7 @@ pub(super) fn outvoted(estimator: &Estimator, at: &ValuePositions) -> Vec<Diagno
         let one = alone.iter().find(|one| one.input == input.name)?;
         (one.level < Level::Warn).then(|| {
             let place = at.of(&["inputs", &input.name]);
-            Diagnostic::warning("outvoted", place, message(one, profile)).help(help(one))
+            Diagnostic::warning(OUTVOTED, place, message(one, profile)).help(help(one))
         })
     });
     found.collect()
@@ -103,13 +105,23 @@ fn message(one: &OutvotedInput, profile: &Profile) -> String {
         Some(limit) => format!("below `warn` at {limit}"),
         None => "and raises no level".to_string(),
     };
-    format!(
-        "`{}` cannot raise a warning alone: {} gives `{}` {} % while all other inputs are calm, {below}",
-        one.input,
-        at(one),
-        one.risk_output,
-        shown(one.risk_pct)
-    )
+    let (input, risk, risk_pct) = (&one.input, &one.risk_output, shown(one.risk_pct));
+    match one.raises_risk() {
+        true => format!(
+            "`{input}` cannot raise a warning alone: {} gives `{risk}` {risk_pct} % while all other inputs are calm, {below}",
+            at(one)
+        ),
+        false => format!(
+            "`{input}` cannot raise a warning alone: while all other inputs are calm, `{risk}` is {risk_pct} % at every value of it, {below}"
+        ),
+    }
+}
+
+impl OutvotedInput {
+    /// Whether the input raises the risk by at least one percentage point.
+    fn raises_risk(&self) -> bool {
+        self.risk_pct - self.calm_risk_pct >= 1.0
+    }
 }
 
 /// Formats a value with its term: `0 (empty)`.
@@ -123,10 +135,16 @@ fn at(one: &OutvotedInput) -> String {
 
 fn help(one: &OutvotedInput) -> String {
     let term = one.term.as_deref().unwrap_or("TERM");
-    format!(
-        "the rules about the other inputs outweigh it: write rules with `{input} IS {term}` that conclude a separate output, such as `{input}_risk`, and name it in `other_risks`",
-        input = one.input
-    )
+    let input = &one.input;
+    let accept = format!("`allow: [{{finding: outvoted, of: {input}, because: ...}}]`");
+    match one.raises_risk() {
+        true => format!(
+            "the rules about the other inputs outweigh it: write rules with `{input} IS {term}` that conclude a separate output, such as `{input}_risk`, and name it in `other_risks`; if it is meant to act only with others, accept this: {accept}"
+        ),
+        false => format!(
+            "its rules need other inputs, too; if that is intended, accept this: {accept}; otherwise add rules about `{input}` alone that conclude a separate output, and name it in `other_risks`"
+        ),
+    }
 }
 
 /// Formats a value with at most four digits.
@@ -163,7 +181,7 @@ fn of_risk(estimator: &Estimator) -> Vec<Option<OutvotedInput>> {
         .into_iter()
         .flatten()
         .reduce(|a, b| if b.0 < a.0 { b } else { a });
-    let Some((_, calm)) = calm else {
+    let Some((calm_risk_pct, calm)) = calm else {
         return profile.inputs.iter().map(|_| None).collect();
     };
     let all = &values;
@@ -188,6 +206,7 @@ fn of_risk(estimator: &Estimator) -> Vec<Option<OutvotedInput>> {
             term: term(variable.as_ref()?, value),
             risk_output: profile.output.clone(),
             risk_pct,
+            calm_risk_pct,
             level: level(profile, risk_pct),
         })
     });

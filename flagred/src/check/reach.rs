@@ -59,10 +59,7 @@ pub(super) fn thresholds(
                 .is_some_and(|limit| limit > 1.0 && limit <= low)
         };
         let left_out = left_out(estimator.model(), &profile.output);
-        match left_out
-            .first()
-            .filter(|_| levels.iter().any(|level| is_always(level)))
-        {
+        match left_out.first().filter(|_| levels.iter().any(is_always)) {
             None => found.extend(reached),
             // This is the cause of all these findings.
             Some(proposition) => {

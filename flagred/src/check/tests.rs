@@ -329,3 +329,66 @@ fn numbers_of_statistics_in_another_unit_are_reported() {
         assert_eq!(of(source), "", "{source}");
     }
 }
+
+#[test]
+fn the_author_accepts_findings_by_code_and_name() {
+    let rules = RULES.replace(
+        "  - IF margin IS low OR battery IS empty THEN risk IS high",
+        "  - IF margin IS low AND battery IS empty THEN risk IS high
+  - IF margin IS low AND battery IS full THEN risk IS low
+  - IF margin IS high AND battery IS empty THEN risk IS low",
+    );
+    let rules = fuzzy::Source::new(rules);
+    let check = |allow: &str| {
+        let source = fuzzy::Source::new(format!("{PROFILE}{allow}"));
+        let (mut findings, estimator) = profile(&source, &rules, &SIGNALS);
+        findings.0.extend(outvoted(&source, &estimator.unwrap()).0);
+        let codes = findings.0.iter().map(|one| one.code);
+        let counts = accepted(&source, &rules, &SIGNALS).into_iter();
+        let counts: Vec<usize> = counts.map(|one| one.count).collect();
+        (codes.collect::<Vec<_>>(), counts)
+    };
+    assert_eq!(check(""), (vec!["outvoted"], Vec::new()));
+    let entry = "allow: [{finding: outvoted, of: battery, because: only together}]\n";
+    assert_eq!(check(entry), (Vec::new(), vec![1]));
+    // Entries without a finding are findings, and other findings remain.
+    let entries =
+        "allow: [{finding: outvoted, of: margin, because: x}, {finding: unit, because: y}]\n";
+    let all = vec!["unneeded-allow", "outvoted", "unneeded-allow"];
+    assert_eq!(check(entries), (all, vec![0, 0]));
+    let wrong = format!("{PROFILE}allow: [{{finding: jump, because: x}}]\n");
+    let error = wrong.parse::<Profile>().unwrap_err().to_string();
+    assert!(
+        error.contains("`finding` of entry 1 of `allow` cannot be `jump`"),
+        "{error}"
+    );
+}
+
+#[test]
+fn an_input_without_an_effect_of_its_own_is_not_called_outweighed() {
+    let rules = RULES.replace(
+        "  - IF margin IS low OR battery IS empty THEN risk IS high",
+        "  - IF margin IS low THEN risk IS high",
+    );
+    let rules = rules.replace(
+        "margin IS high AND battery IS full",
+        "margin IS high AND battery IS any",
+    );
+    let source = fuzzy::Source::new(PROFILE);
+    let (_, estimator) = profile(&source, &fuzzy::Source::new(rules), &SIGNALS);
+    let found = outvoted(&source, &estimator.unwrap());
+    let [finding] = found.0.as_slice() else {
+        panic!("{found}");
+    };
+    assert!(
+        finding
+            .message
+            .contains("at every value of it, below `warn` at 60"),
+        "{found}"
+    );
+    let help = finding.help.as_deref().unwrap();
+    assert!(
+        help.starts_with("its rules need other inputs, too; if that is intended"),
+        "{help}"
+    );
+}

@@ -87,6 +87,7 @@ fn profile() -> Profile {
         verdict: VerdictSettings::default(),
         findings: Vec::new(),
         reliability: Vec::new(),
+        allow: Vec::new(),
     }
 }
 

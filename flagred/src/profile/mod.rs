@@ -2,6 +2,8 @@
 
 use alloc::{string::String, vec::Vec};
 
+use fuzzy::model::AllowedFinding;
+
 use crate::{
     accumulator::AccumulatorSettings,
     channel::{self, Channel, Input},
@@ -74,7 +76,19 @@ pub struct Profile {
     pub findings: Vec<CauseWords>,
     /// How often large attitude errors followed each band of the risk, ascending; empty if it was not measured.
     pub reliability: Vec<Reliability>,
+    /// The findings of `check` that the author accepts.
+    pub allow: Vec<AllowedFinding>,
 }
+
+/// The codes of findings that the author of a profile can accept.
+pub(crate) const FINDINGS: [&str; 6] = [
+    "outvoted",
+    "out-of-reach",
+    "order",
+    "unit",
+    "unknown-signal",
+    "missing-threshold",
+];
 
 /// The words of a finding for the pilot, by the input that raised the risk.
 #[derive(Debug, Clone, PartialEq, Eq)]

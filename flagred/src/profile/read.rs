@@ -6,6 +6,7 @@ use core::str::FromStr;
 use fuzzy::{
     Source,
     diagnostic::{Diagnostic, Findings},
+    model::AllowedFinding,
     tree::{Fields, Node, Value},
 };
 
@@ -16,7 +17,7 @@ mod reliability;
 mod tests;
 mod verdict;
 
-use super::{OtherRisk, Profile, Sampling};
+use super::{FINDINGS, OtherRisk, Profile, Sampling};
 use crate::{
     accumulator::AccumulatorSettings,
     gap::{GapMethod, GapSettings},
@@ -76,6 +77,7 @@ fn read(tree: &Node, found: &mut Mistakes) -> Option<Profile> {
         "other_risks",
         "findings",
         "reliability",
+        "allow",
     ];
     if !matches!(tree.value, Value::Mapping(_)) {
         found.push(tree.unexpected_document("profile"));
@@ -160,6 +162,9 @@ fn read(tree: &Node, found: &mut Mistakes) -> Option<Profile> {
         window_s,
         findings: findings(&fields, &inputs, found),
         reliability: reliability(&fields, found),
+        allow: fields.get("allow").map_or_else(Vec::new, |node| {
+            AllowedFinding::read(node, &FINDINGS, &mut Vec::new(), found)
+        }),
         inputs,
     };
     Some(profile)

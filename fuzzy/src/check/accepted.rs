@@ -1,14 +1,14 @@
 //! Findings that the author accepts.
 
 use alloc::{format, string::String, vec::Vec};
+use core::ops::Range;
 
-use super::{Report, findings};
 use crate::{
     diagnostic::{Diagnostic, Severity},
-    model::{Model, document::Spans},
+    model::AllowedFinding,
 };
 
-/// An entry of [`Model::allow`], with the number of findings that it accepts.
+/// An entry of `allow`, with the number of findings that it accepts.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -16,49 +16,62 @@ use crate::{
 pub struct AcceptedFindings {
     /// The code of the finding.
     pub finding: String,
+    /// The name that the finding must contain; absent if all findings with this code are accepted.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    #[cfg_attr(feature = "schema", schemars(with = "str"))]
+    pub of: Option<String>,
     /// The author's reason.
     pub because: String,
-    /// The number of findings with this code.
+    /// The number of accepted findings.
     pub count: usize,
 }
 
-/// Returns the index of the entry that accepts a finding.
-pub(super) fn by(model: &Model, finding: &Diagnostic) -> Option<usize> {
-    let mut entries = model.allow.iter();
-    entries.position(|one| one.finding == finding.code && finding.severity != Severity::Error)
-}
+impl AcceptedFindings {
+    /// Removes the findings that the entries of `allow` accept from `findings`, and returns the entries with their numbers of
+    /// findings. Errors are never accepted. If several entries accept a finding, it counts for the first one.
+    pub fn remove(
+        allow: &[AllowedFinding],
+        findings: &mut Vec<Diagnostic>,
+    ) -> Vec<AcceptedFindings> {
+        let entry = |one: &AllowedFinding| AcceptedFindings {
+            finding: one.finding.clone(),
+            of: one.of.clone(),
+            because: one.because.clone(),
+            count: 0,
+        };
+        let mut entries: Vec<AcceptedFindings> = allow.iter().map(entry).collect();
+        findings.retain(|finding| {
+            let entry = entries.iter_mut().find(|one| one.accepts(finding));
+            entry.is_none_or(|entry| {
+                entry.count += 1;
+                false
+            })
+        });
+        entries
+    }
 
-/// Returns the entries, each with the number of findings that it accepts.
-pub(super) fn counted(report: &Report, model: &Model) -> Vec<AcceptedFindings> {
-    let entry = |one: &crate::model::AllowedFinding| AcceptedFindings {
-        finding: one.finding.clone(),
-        because: one.because.clone(),
-        count: 0,
-    };
-    let mut entries: Vec<AcceptedFindings> = model.allow.iter().map(entry).collect();
-    if entries.is_empty() {
-        return entries;
+    /// Returns a warning for each entry that accepts no finding. `spans` are the positions of the entries.
+    pub fn unneeded(entries: &[AcceptedFindings], spans: &[Range<usize>]) -> Vec<Diagnostic> {
+        let warning = |(i, one): (usize, &AcceptedFindings)| {
+            let span = spans.get(i).cloned().unwrap_or_default();
+            let of = one
+                .of
+                .as_ref()
+                .map_or(String::new(), |of| format!(" of `{of}`"));
+            let message = format!(
+                "`allow` accepts `{}`{of}, which does not occur",
+                one.finding
+            );
+            let finding = Diagnostic::warning("unneeded-allow", span, message);
+            (one.count == 0).then(|| finding.help("remove the entry"))
+        };
+        entries.iter().enumerate().filter_map(warning).collect()
     }
-    for finding in findings::of(report, model, &Spans::default()) {
-        if let Some(entry) = by(model, &finding).and_then(|entry| entries.get_mut(entry)) {
-            entry.count += 1;
-        }
-    }
-    entries
-}
 
-/// Returns a warning for each entry whose finding does not occur; none if the analysis is incomplete.
-pub(super) fn unneeded(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnostic> {
-    let is_complete = report.uncovered_complete && report.reach_complete && report.jumps_complete;
-    if !is_complete {
-        return Vec::new();
+    fn accepts(&self, finding: &Diagnostic) -> bool {
+        let is_of = |of: &String| finding.message.contains(&format!("`{of}`"));
+        self.finding == finding.code
+            && finding.severity != Severity::Error
+            && self.of.as_ref().is_none_or(is_of)
     }
-    let warning = |(i, one): (usize, AcceptedFindings)| {
-        let span = spans.allow.get(i).cloned().unwrap_or_default();
-        let message = format!("`allow` accepts `{}`, which does not occur", one.finding);
-        let finding = Diagnostic::warning("unneeded-allow", span, message);
-        (one.count == 0).then(|| finding.help("remove the entry"))
-    };
-    let entries = counted(report, model).into_iter().enumerate();
-    entries.filter_map(warning).collect()
 }

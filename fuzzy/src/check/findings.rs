@@ -542,7 +542,7 @@ impl ModelPositions<'_> {
             coordinates(&one.at)
         );
         Diagnostic::warning("jump", self.name(&one.output), message).help(
-            "a vertical edge of a term, or a switch from one rule to another, causes it; let terms overlap, or accept intended jumps with `allow`",
+            "a vertical edge of a term, or a switch from one rule to another, causes it; let terms overlap, or accept intended jumps with `allow`; smaller jumps along the same input are not listed",
         )
     }
 }

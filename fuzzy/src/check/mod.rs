@@ -339,19 +339,22 @@ fn known(model: &Model, claim: &Monotone) -> Result<(), alloc::boxed::Box<Diagno
 
 impl Report {
     /// Converts the report to diagnostics with positions. Findings that the author accepts are omitted; an accepted
-    /// finding that does not occur is reported itself.
+    /// finding that does not occur is reported itself, unless the analysis is incomplete.
     #[must_use]
     pub fn findings(&self, model: &Model, spans: &Spans) -> Vec<Diagnostic> {
         let mut found = findings::of(self, model, spans);
-        found.retain(|finding| accepted::by(model, finding).is_none());
-        found.extend(accepted::unneeded(self, model, spans));
+        let accepted = AcceptedFindings::remove(&model.allow, &mut found);
+        if self.uncovered_complete && self.reach_complete && self.jumps_complete {
+            found.extend(AcceptedFindings::unneeded(&accepted, &spans.allow));
+        }
         found
     }
 
     /// Returns the entries of [`Model::allow`], each with the number of findings that it accepts.
     #[must_use]
     pub fn accepted(&self, model: &Model) -> Vec<AcceptedFindings> {
-        accepted::counted(self, model)
+        let mut found = findings::of(self, model, &Spans::default());
+        AcceptedFindings::remove(&model.allow, &mut found)
     }
 }
 

@@ -655,6 +655,14 @@ allow: [{finding: jump, because: limits of the regulation}, {finding: hole, beca
     let accepted = report.accepted(&text.parse().unwrap());
     let counts: Vec<usize> = accepted.iter().map(|one| one.count).collect();
     assert_eq!(counts, [1, 0]);
+    // An entry with a name accepts only the findings about it.
+    let (before, _) = text.split_once("allow:").unwrap();
+    let of = "allow: [{finding: unused, of: fine, because: later}, {finding: unused, of: over, because: no}, {finding: jump, of: dti, because: law}]";
+    let (_, findings) = report_of(&(before.to_owned() + of), &Options::default());
+    let messages: Vec<&str> = findings.iter().map(|one| one.message.as_str()).collect();
+    let unused = "no rule uses the term `stretched` of `dti`";
+    let unneeded = "`allow` accepts `unused` of `over`, which does not occur";
+    assert_eq!(messages, [unused, unneeded]);
 }
 
 #[test]

@@ -352,7 +352,7 @@ impl SvgDocument {
 <rect class="paper" y="{top}" width="{width}" height="{height}" fill="#fff"/>
 {body}</svg>
 "##,
-            top = -above,
+            top = 0.0 - above,
         )
     }
 }

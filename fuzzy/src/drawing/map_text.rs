@@ -10,9 +10,6 @@ use super::{
 };
 use crate::model::Model;
 
-/// The number of columns and rows of a table of values.
-const TABLE: usize = 6;
-
 /// The coverage from which a cell counts as covered.
 const COVERED: f64 = 0.5;
 
@@ -104,7 +101,7 @@ pub fn rules_text(
     text
 }
 
-/// Formats the values of a slice at a few points of its axes, with a precision of about a ten-thousandth of the
+/// Formats the values of a slice at up to `most` points of each axis, with a precision of about a ten-thousandth of the
 /// output's range, and the number of cells with a coverage below 0.5.
 ///
 /// Appended to [`map_text`], it gives a snapshot in which small changes are visible too.
@@ -127,15 +124,15 @@ pub fn rules_text(
 /// let engine = Engine::new(&model)?;
 /// let map = DecisionMap::new(&engine, Grid::new(&engine, 11)?, 0)?;
 /// let slice = drawing::Slice::new(&model, &map).ok_or("fix inputs until one or two are left")?;
-/// let text = drawing::map_text(&slice, |cell, _| cell.to_string()) + &drawing::values_text(&slice);
+/// let text = drawing::map_text(&slice, |cell, _| cell.to_string()) + &drawing::values_text(&slice, 6);
 /// // insta::assert_snapshot!(text);
 /// assert!(text.contains("coverage below 0.5: 0 of 11 cells"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn values_text(slice: &Slice) -> String {
-    let columns = thinned(slice.columns(), TABLE);
+pub fn values_text(slice: &Slice, most: usize) -> String {
+    let columns = thinned(slice.columns(), most);
     let rows = match &slice.y {
-        Some(y) => thinned(y.points.len(), TABLE),
+        Some(y) => thinned(y.points.len(), most),
         None => vec![0],
     };
     let label = |points: &[f64], i: usize| {

@@ -10,7 +10,7 @@ use crate::{
     tree::Node,
 };
 
-pub(super) const KEYS: [&str; 2] = ["finding", "because"];
+pub(super) const KEYS: [&str; 3] = ["finding", "of", "because"];
 
 /// The codes of findings that an author can accept: the findings of the analysis that depend only on the rule set.
 pub(crate) const CODES: [&str; 17] = [
@@ -38,47 +38,93 @@ pub(super) fn read(
     spans: &mut Vec<Range<usize>>,
     findings: &mut Vec<Diagnostic>,
 ) -> Vec<AllowedFinding> {
-    let help = format!("write `allow: [{ENTRY}]`, with an entry for each finding");
-    let items = node.items("`allow`", &help, findings).unwrap_or_default();
-    let mut all: Vec<AllowedFinding> = Vec::new();
-    for (i, item) in items.iter().enumerate() {
-        let Some(allowed) = entry(item, i + 1, findings) else {
-            continue;
-        };
-        let same = all.iter().position(|one| one.finding == allowed.finding);
-        if let Some(first) = same.and_then(|first| spans.get(first)) {
-            let (span, first) = (item.span.clone(), first.clone());
-            let finding = &allowed.finding;
-            findings.push(duplicate("finding", finding, "`allow`", span, first));
-            continue;
-        }
-        spans.push(item.span.clone());
-        all.push(allowed);
-    }
-    all
+    AllowedFinding::read(node, &CODES, spans, findings)
 }
 
-const ENTRY: &str = "{finding: jump, because: limits of the regulation}";
+impl AllowedFinding {
+    /// Reads the value of the key `allow` of a rule set or a profile, whose findings have these `codes`. Appends the span of
+    /// each entry to `spans`, and errors to `findings`.
+    pub fn read(
+        node: &Node,
+        codes: &[&'static str],
+        spans: &mut Vec<Range<usize>>,
+        findings: &mut Vec<Diagnostic>,
+    ) -> Vec<AllowedFinding> {
+        let example = example(codes);
+        let help = format!("write `allow: [{example}]`, with an entry for each finding");
+        let items = node.items("`allow`", &help, findings).unwrap_or_default();
+        let mut all: Vec<AllowedFinding> = Vec::new();
+        for (i, item) in items.iter().enumerate() {
+            let Some(allowed) = entry(item, i + 1, codes, findings) else {
+                continue;
+            };
+            let is_same =
+                |one: &AllowedFinding| one.finding == allowed.finding && one.of == allowed.of;
+            let same = all.iter().position(is_same);
+            if let Some(first) = same.and_then(|first| spans.get(first)) {
+                let (span, first) = (item.span.clone(), first.clone());
+                let finding = &allowed.finding;
+                findings.push(duplicate("finding", finding, "`allow`", span, first));
+                continue;
+            }
+            spans.push(item.span.clone());
+            all.push(allowed);
+        }
+        all
+    }
+}
 
-fn entry(node: &Node, number: usize, findings: &mut Vec<Diagnostic>) -> Option<AllowedFinding> {
+/// An entry for the first of these codes that messages use as an example.
+fn example(codes: &[&str]) -> &'static str {
+    match codes.contains(&"jump") {
+        true => "{finding: jump, because: limits of the regulation}",
+        false => "{finding: outvoted, of: battery, because: it acts only with other inputs}",
+    }
+}
+
+fn entry(
+    node: &Node,
+    number: usize,
+    codes: &[&'static str],
+    findings: &mut Vec<Diagnostic>,
+) -> Option<AllowedFinding> {
     let what = format!("entry {number} of `allow`");
-    let fields = node.fields(&what, &KEYS, &format!("write `{ENTRY}`"), findings)?;
+    let fields = node.fields(
+        &what,
+        &KEYS,
+        &format!("write `{}`", example(codes)),
+        findings,
+    )?;
     let code = "name a finding of `check`: `finding: jump`";
     let reason = "write why it is accepted: `because: limits of the regulation`";
     let code = fields.require("finding", code, findings).and_then(|node| {
-        let words = CODES.map(|code| (code, code));
+        let words: Vec<(&str, &'static str)> = codes.iter().map(|code| (*code, *code)).collect();
         let before = findings.len();
         let code = node.choice(&format!("`finding` of {what}"), &words, findings);
         if let Some(finding) = findings.get_mut(before)
-            && !finding.help.as_deref().is_some_and(|help| help.starts_with("did you mean"))
+            && !finding
+                .help
+                .as_deref()
+                .is_some_and(|help| help.starts_with("did you mean"))
         {
             finding.help = Some(format!(
-                "only these warnings and notes about the rules can be accepted (not errors or claims): {}",
-                all_of(&CODES)
+                "only these warnings and notes can be accepted (not errors or claims): {}",
+                all_of(codes)
             ));
         }
         code
     });
+    let of = match fields.get("of") {
+        Some(node) => {
+            let help = "write the name of a variable that the finding names: `of: speed`";
+            Some(
+                node.words(&format!("`of` of {what}"), help, findings)?
+                    .text
+                    .clone(),
+            )
+        }
+        None => None,
+    };
     let node = fields.require("because", reason, findings)?;
     let because = optional_text(&fields, "because", findings)?;
     if because.trim().is_empty() {
@@ -88,6 +134,7 @@ fn entry(node: &Node, number: usize, findings: &mut Vec<Diagnostic>) -> Option<A
     }
     Some(AllowedFinding {
         finding: code?.into(),
+        of,
         because,
     })
 }
@@ -95,10 +142,10 @@ fn entry(node: &Node, number: usize, findings: &mut Vec<Diagnostic>) -> Option<A
 /// Returns the value of the key `allow`; `None` if the author accepts no findings.
 pub(super) fn write(allow: &[AllowedFinding]) -> Option<Node> {
     let entries = allow.iter().map(|one| {
-        Node::mapping([
-            ("finding", Node::text(one.finding.as_str())),
-            ("because", Node::text(one.because.as_str())),
-        ])
+        let of = one.of.as_deref().map(|of| ("of", Node::text(of)));
+        let entry = [("finding", Node::text(one.finding.as_str()))].into_iter();
+        let because = ("because", Node::text(one.because.as_str()));
+        Node::mapping(entry.chain(of).chain([because]))
     });
     (!allow.is_empty()).then(|| Node::list(entries.collect()))
 }

@@ -229,7 +229,7 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
         spans.provenance = entry.key_span.clone();
         model.provenance = provenance::read(entry.value, findings);
     }
-    let rules_help = "write `rules:` and a list of rules: `- IF input IS term THEN output IS term`";
+    let rules_help = "write `rules:` and a list of rules: `- IF input IS term THEN output IS term`; to learn the rules from data, write `rules: []`";
     let key = |key| {
         fields
             .entry(key)

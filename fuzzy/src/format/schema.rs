@@ -256,12 +256,18 @@ fn allowed() -> Node {
     let codes = allow::CODES.map(|code| (code, ()));
     let properties = [
         ("finding", words("The code of the finding", &codes)),
+        (
+            "of",
+            text(
+                "Accept only findings whose message contains this name, such as the name of a variable",
+            ),
+        ),
         ("because", text("The reason why the finding is accepted")),
     ];
     Node::mapping(object(
         "A finding that the author accepts",
         properties,
-        &allow::KEYS,
+        &["finding", "because"],
     ))
 }
 

@@ -91,7 +91,17 @@ impl LastStage {
             .retain(|o| is_of_target(&o.variable.name));
         last_stage.model.rules = own;
         let engine = Engine::new(&before).map_err(|findings| LearnError::Chain {
-            message: alloc::format!("{findings}"),
+            message: match (
+                before.rules.is_empty(),
+                before.outputs.first(),
+                findings.0.first(),
+            ) {
+                (true, Some(output), _) => {
+                    alloc::format!("no rule concludes `{}`", output.variable.name)
+                }
+                (_, _, Some(finding)) => finding.message.clone(),
+                _ => "their rules have errors".into(),
+            },
         })?;
         last_stage.before = Some(engine);
         Ok(last_stage)

@@ -247,10 +247,8 @@ mod tests {
     use super::*;
 
     fn points(all: &[(f64, f64, f64)]) -> impl Iterator<Item = WeightedNumber> + Clone {
-        let points = all
-            .iter()
-            .map(|&(at, lower, upper)| WeightedNumber { at, lower, upper });
-        points
+        all.iter()
+            .map(|&(at, lower, upper)| WeightedNumber { at, lower, upper })
     }
 
     #[test]

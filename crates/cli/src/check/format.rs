@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 pub(super) enum Format {
     /// Text for people, with the source lines of the findings
     Text,
-    /// A JSON document for each rule set
+    /// A JSON document for each file
     Json,
     /// One SARIF 2.1.0 document
     Sarif,

@@ -22,7 +22,7 @@ use crate::{
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Flight logs with attitude, or CSV tables with a row for each flight and columns such as `margin_mean`
+    /// Flight logs with attitude; or CSV tables that already have a row for each flight, with columns such as `margin_mean`
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<String>,
 
@@ -30,12 +30,12 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAME|FILE")]
     profile: Option<String>,
 
-    /// Make a row for each period of this length instead of each time in the air
+    /// Make a row for each period of this length [default: a row for each time in the air]
     #[arg(long, value_name = "SECONDS", value_parser = numbers::positive, conflicts_with = "horizon")]
     window: Option<f64>,
 
-    /// Make a row for each moment instead, with the inputs at that moment and the largest attitude
-    /// error in the given number of seconds after it
+    /// Make a row for each moment, with the inputs at that moment and the largest attitude error in the given number of
+    /// seconds after it
     #[arg(long, value_name = "SECONDS", value_parser = numbers::positive)]
     horizon: Option<f64>,
 
@@ -44,10 +44,10 @@ pub(crate) struct Arguments {
     every: f64,
 
     /// Attitude error that counts as a risk of 100 %, in degrees
-    #[arg(long, value_name = "DEG", value_parser = numbers::positive, default_value_t = CRITICAL_ERROR_DEG)]
+    #[arg(long, value_name = "DEGREES", value_parser = numbers::positive, default_value_t = CRITICAL_ERROR_DEG)]
     critical: f64,
 
-    /// The file to write, replaced if it exists [default: standard output]
+    /// The file to write, replaced if it exists; `-` is standard output [default: -]
     #[arg(short, long, value_name = "OUT.csv", value_parser = output::csv_path)]
     output: Option<PathBuf>,
 }

@@ -59,9 +59,12 @@ impl Errors {
     /// Prints the errors on standard error if there are measured values.
     pub(super) fn say(&self, output: &str) {
         if let Some(line) = self.unmeasured.first_line() {
+            let rows = match self.unmeasured.count() {
+                1 => "1 row".to_owned(),
+                count => format!("{count} rows"),
+            };
             say(&format!(
-                "`{output}` is not compared in {} rows, whose measured value is not a number (first in line {line})",
-                self.unmeasured.count()
+                "`{output}` is not compared in {rows}, whose measured value is not a number (first in line {line})"
             ));
         }
         if self.rows == 0 {

@@ -7,7 +7,6 @@ mod tally;
 mod uncertain;
 
 use std::{
-    borrow::Cow,
     io::{self, Write as _},
     path::{Path, PathBuf},
 };
@@ -18,7 +17,7 @@ use self::tally::Tally;
 
 use crate::{
     failure::{Exit, Failure},
-    output::{self, Files, Replace, Stdout, number_or_cell},
+    output::{self, Files, Replace, Stdout},
     rule_set,
     table::{self, Format, Header},
 };
@@ -31,20 +30,18 @@ pub(crate) struct Arguments {
 
     /// A table with a column for each input; other columns are copied [default: standard input]
     #[arg(
-        value_name = "POINTS.csv",
+        value_name = "TABLE.csv",
         default_value = "-",
         hide_default_value = true
     )]
     points: PathBuf,
 
-    /// The file to write, replaced if it exists [default: standard output]
+    /// The file to write, replaced if it exists; `-` is standard output [default: -]
     #[arg(short, long, value_name = "OUT.csv", default_value = "-", hide_default_value = true, value_parser = output::table_path)]
     output: PathBuf,
 
-    /// Suffix of the output columns, such as `_model`. Required if a column has the name of an
-    /// output: its values are then compared with the output (RMS error, mean error, worst rows)
-    #[arg(long, value_name = "SUFFIX", default_value = "")]
-    suffix: String,
+    #[command(flatten)]
+    suffix: table::Suffix,
 
     /// Add columns that explain the outputs; separate several by commas, or repeat the option
     #[arg(long, value_name = "COLUMN", value_delimiter = ',')]
@@ -62,7 +59,7 @@ pub(crate) struct Arguments {
 /// A column that explains the outputs of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum ExplanationColumn {
-    /// The largest firing strength of a rule, from 0 to 1
+    /// The coverage: the largest firing strength of a rule, from 0 to 1
     Coverage,
     /// The number of the rule with that strength, from 1
     Rule,
@@ -89,8 +86,6 @@ struct Plan {
     header: Header,
     /// The column of each input.
     inputs: Vec<usize>,
-    /// The input that each column contains.
-    input_of: Vec<Option<usize>>,
     with: Vec<ExplanationColumn>,
     suffix: String,
     /// Whether each output has an interval, whose ends have columns of their own.
@@ -101,6 +96,8 @@ struct Plan {
     measured: Vec<Option<usize>>,
     delimiter: u8,
     skip_bad_rows: bool,
+    /// Whether the table is written to a terminal.
+    is_terminal: bool,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
@@ -121,9 +118,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     let engine = rule_set::load(&arguments.model)?;
     let format = &arguments.format;
-    let (header, reader) = table::open(&arguments.points, format.delimiter)?;
+    let (header, reader) = table::open(&arguments.points, format.layout.delimiter)?;
     let names: Vec<&str> = engine.input_names().collect();
-    let inputs = format.columns(&names, &header)?;
+    let inputs = format.layout.columns(&names, &header)?;
     let mut with = Vec::new();
     for column in &arguments.with {
         if !with.contains(column) {
@@ -132,18 +129,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     let half_widths = uncertain::half_widths(&arguments.uncertain, &engine, &header)?;
     let plan = Plan {
-        input_of: (0..header.names.len())
-            .map(|column| inputs.iter().position(|input| *input == column))
-            .collect(),
         inputs,
-        measured: match arguments.suffix.is_empty() {
+        measured: match arguments.suffix.suffix.is_empty() {
             true => vec![None; engine.output_names().len()],
             false => engine
                 .output_names()
                 .map(|name| header.column(name))
                 .collect(),
         },
-        suffix: arguments.suffix.clone(),
+        suffix: arguments.suffix.suffix.clone(),
         intervals: {
             let model = engine.model();
             let outputs = model.outputs.iter();
@@ -156,8 +150,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         engine,
         header,
         with,
-        delimiter: format.delimiter,
+        delimiter: format.layout.delimiter,
         skip_bad_rows: format.skip_bad_rows,
+        is_terminal: output::is_terminal(Some(&output)),
     };
     let head = plan.head()?;
     let tally = if output.is_stdout() {
@@ -251,11 +246,11 @@ impl Plan {
                     .help("`--suffix _model` appends to the names of the outputs' columns, and compares them with measured values"),
             );
         }
-        let copied = self.header.names.iter().map(|name| number_or_cell(name));
-        let added = added.iter().map(|name| output::cell(name));
+        let names = self.header.names.iter().chain(&added);
+        let names = names.map(|name| output::copied(name.as_bytes(), self.is_terminal));
         let mut head = Vec::new();
         let mut writer = self.writer(&mut head);
-        writer.write_record(copied.chain(added).map(Cow::into_owned))?;
+        writer.write_record(names)?;
         writer.flush()?;
         drop(writer);
         Ok(head)

@@ -6,7 +6,7 @@ use fuzzy::engine::{Enclosure, IntervalOutcome, Outcome, Sequence, State};
 use super::{ExplanationColumn, Plan, tally::Tally, uncertain};
 use crate::{
     failure::Failure,
-    output::{cell, number_or_cell},
+    output::{self, cell},
     table::{Cell, Extent, Reader},
 };
 
@@ -245,17 +245,9 @@ impl<'p> Evaluator<'p> {
         outcomes: &[Outcome],
     ) -> csv::Result<()> {
         let mut number = zmij::Buffer::new();
-        for (column, input) in self.plan.input_of.iter().enumerate() {
+        for column in 0..self.plan.header.names.len() {
             let text = record.get(column).unwrap_or_default();
-            let values = input.and_then(|input| self.columns.get(input));
-            let is_number = values
-                .and_then(|values| values.get(row))
-                .is_some_and(|value| value.is_finite());
-            if is_number || is_plain(text) {
-                writer.write_field(text)?;
-            } else {
-                writer.write_field(number_or_cell(&String::from_utf8_lossy(text)).as_bytes())?;
-            }
+            writer.write_field(output::copied(text, self.plan.is_terminal))?;
         }
         let enclosed = self.enclosed(row);
         for (output, (outcome, is_interval)) in
@@ -303,7 +295,7 @@ impl<'p> Evaluator<'p> {
                     let inputs = self.clamped(row).filter(|_| is_clamped);
                     let names =
                         inputs.filter_map(|input| self.plan.engine.input_names().nth(input));
-                    writer.write_field(cell(&names.collect::<Vec<_>>().join("|")).as_bytes())?;
+                    writer.write_field(names.collect::<Vec<_>>().join("|"))?;
                 }
                 ExplanationColumn::Error => {
                     let error = self.error(row, outcomes, enclosed.as_deref());
@@ -365,12 +357,6 @@ impl<'p> Evaluator<'p> {
             .collect::<Vec<_>>()
             .join("; ")
     }
-}
-
-/// Returns whether a cell contains only visible characters and cannot be a spreadsheet formula.
-fn is_plain(text: &[u8]) -> bool {
-    let is_visible = text.iter().all(|byte| (b' '..=b'~').contains(byte));
-    is_visible && !matches!(text.first(), Some(b'=' | b'+' | b'-' | b'@'))
 }
 
 /// Returns the fewest digits that read back as the same number.

@@ -1,6 +1,6 @@
 //! Explanations of the rows of a table: the dominant rule and the shares of all rules, for each output.
 
-use std::path::Path;
+use std::{io::Write as _, path::Path};
 
 use fuzzy::{
     Engine,
@@ -8,31 +8,47 @@ use fuzzy::{
     engine::{EvaluateError, ExplainedOutput},
 };
 
+use super::Arguments;
 use crate::{
     failure::Failure,
-    output::{cell, number_or_cell},
-    table::{Cell, Format, Header, Table},
+    output::{self, Output, Stdout},
+    table::{Cell, Header, Table},
 };
 
-/// Returns the table with three columns added for each output: `fan`, `fan_rule` and `fan_shares`, such as `3=0.61|2=0.39`.
-pub(super) fn explained(engine: &Engine, path: &Path, format: &Format) -> Result<String, Failure> {
-    let table = Table::read(path, format.delimiter)?;
+/// Writes the table with three columns added for each output: `fan`, `fan_rule` and `fan_shares`, such as `3=0.61|2=0.39`.
+pub(super) fn explain(
+    engine: &Engine,
+    path: &Path,
+    arguments: &Arguments,
+    output: Option<&Output>,
+) -> Result<(), Failure> {
+    let format = &arguments.format;
+    let mut table = Table::read_with(path, format)?;
     let names: Vec<&str> = engine.input_names().collect();
-    let inputs = format.columns(&names, &table.header)?;
+    let inputs = format.layout.columns(&names, &table.header)?;
     let mut writer = csv::WriterBuilder::new()
-        .delimiter(format.delimiter)
+        .delimiter(format.layout.delimiter)
         .comment(Some(b'#'))
         .from_writer(Vec::new());
-    let added = added(engine, &table.header)?;
-    let copied = table.header.names.iter().map(|name| number_or_cell(name));
-    let added = added.iter().map(|name| cell(name));
-    writer.write_record(copied.chain(added).map(|name| name.into_owned()))?;
+    let is_terminal = output::is_terminal(output);
+    let copied = |text: &str| output::copied(text.as_bytes(), is_terminal).into_owned();
+    let added = added(engine, &table.header, &arguments.suffix.suffix)?;
+    let names = table.header.names.iter().chain(&added);
+    writer.write_record(names.map(|name| copied(name)))?;
+    let mut skipped = std::mem::take(&mut table.skipped);
+    let rows = table.len() + skipped.len();
     for row in 0..table.len() {
         let values = inputs.iter().map(|input| value(&table, row, *input));
-        let values: Vec<f64> = match values.collect::<Result<_, Failure>>() {
+        let values: Vec<f64> = match values.collect::<Result<_, String>>() {
             Ok(values) => values,
-            Err(_) if format.skip_bad_rows => continue,
-            Err(failure) => return Err(failure),
+            Err(problem) if format.skip_bad_rows => {
+                skipped.push(problem);
+                continue;
+            }
+            Err(problem) => {
+                let failure = Failure::unreadable(problem);
+                return Err(failure.help("`--skip-bad-rows` leaves such rows out"));
+            }
         };
         let outputs = match engine.explain(&values) {
             Ok(explanation) => explanation.outputs,
@@ -40,18 +56,31 @@ pub(super) fn explained(engine: &Engine, path: &Path, format: &Format) -> Result
             Err(error) => return Err(Failure::unreadable(error)),
         };
         let columns = 0..table.header.names.len();
-        let copied = columns.map(|column| number_or_cell(table.text(row, column)).into_owned());
+        let cells = columns.map(|column| copied(table.cell(row, column)));
         let reasons = (0..engine.output_names().len()).flat_map(|i| reasons(outputs.get(i)));
-        writer.write_record(copied.chain(reasons))?;
+        writer.write_record(cells.chain(reasons.map(String::into_bytes)))?;
+    }
+    if let Some(first) = skipped.first() {
+        let count = skipped.len();
+        output::say(&format!(
+            "left out {count} of {rows} rows: they cannot be read (first: {first})"
+        ));
     }
     let text = writer.into_inner();
     let text = text.map_err(|error| Failure::unreadable(error.to_string()))?;
-    Ok(String::from_utf8_lossy(&text).into_owned())
+    match output.filter(|output| !output.is_stdout()) {
+        Some(output) => output.write_with(|out| out.write_all(&text)),
+        None => {
+            let mut out = Stdout::data();
+            out.write_all(&text)?;
+            out.finish()
+        }
+    }
 }
 
 /// The names of the added columns.
-fn added(engine: &Engine, header: &Header) -> Result<Vec<String>, Failure> {
-    let of = |output: &str| ["", "_rule", "_shares"].map(|end| format!("{output}{end}"));
+fn added(engine: &Engine, header: &Header, suffix: &str) -> Result<Vec<String>, Failure> {
+    let of = |output: &str| ["", "_rule", "_shares"].map(|end| format!("{output}{suffix}{end}"));
     let added: Vec<String> = engine.output_names().flat_map(of).collect();
     match added.iter().find(|name| header.column(name).is_some()) {
         None => Ok(added),
@@ -59,12 +88,12 @@ fn added(engine: &Engine, header: &Header) -> Result<Vec<String>, Failure> {
             "`{}` has a column `{name}` already",
             header.file
         ))
-        .help("the reasons are written to a column of this name; rename your column")),
+        .help("`--suffix _model` appends to the names of the outputs' columns")),
     }
 }
 
 /// The value of an input in a row; NaN if unknown.
-fn value(table: &Table, row: usize, column: usize) -> Result<f64, Failure> {
+fn value(table: &Table, row: usize, column: usize) -> Result<f64, String> {
     let text = table.text(row, column).as_bytes();
     match Cell::of(text) {
         Cell::Number(number) => Ok(number),
@@ -72,8 +101,7 @@ fn value(table: &Table, row: usize, column: usize) -> Result<f64, Failure> {
         Cell::Bad => {
             let (file, line) = (&table.header.file, table.line(row));
             let (name, problem) = (table.header.name(column), Cell::problem(text));
-            let message = format!("`{file}`, line {line}, column `{name}`: {problem}");
-            Err(Failure::unreadable(message).help("`--skip-bad-rows` leaves such rows out"))
+            Err(format!("`{file}`, line {line}, column `{name}`: {problem}"))
         }
     }
 }

@@ -58,10 +58,11 @@ pub(crate) struct Arguments {
     /// Leave out what the format cannot express, also whole rules, in Rust and C also `samples`; results may differ
     #[arg(long, conflicts_with = "lua")]
     lossy: bool,
-    /// A profile (for Rust, C, Lua) or a rule set (for all but Lua): `flagred`, `flagred-paper`, `flagred-battery`, or a file
+    /// The profile or rule set to export: `flagred`, `flagred-paper`, `flagred-battery`, or a file. `--lua` needs a profile,
+    /// `--fis`, `--fll`, `--fcl` and `--fml` need a rule set
     #[arg(value_name = "FILE", default_value = profile::DEFAULT)]
     file: String,
-    /// The file to write [default: standard output]
+    /// The file to write; `-` is standard output [default: -]
     #[arg(
         short,
         long,
@@ -70,7 +71,7 @@ pub(crate) struct Arguments {
         hide_default_value = true
     )]
     output: PathBuf,
-    /// Replace a rule set of another program if it exists; code is always replaced
+    /// Replace the file if it exists; code (Rust, C, Lua) is replaced without this option
     #[arg(long)]
     force: bool,
 }

@@ -26,7 +26,7 @@ use crate::{
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Tables with a column for the output and columns that may be inputs
-    #[arg(required = true, value_name = "DATA.csv")]
+    #[arg(required = true, value_name = "TABLE.csv")]
     data: Vec<PathBuf>,
 
     /// The column with the output
@@ -81,12 +81,11 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 0, value_name = "NUMBER", value_parser = numbers::seed)]
     seed: u64,
 
-    /// The column with the weights of the rows
+    /// The column with the weights of the rows. Rows of weight 0 do not count in `identify` and `tune`; `learn` refuses them
     #[arg(long, value_name = "COLUMN")]
     weight: Option<String>,
 
-    /// In cross-validation, keep all rows with the same value of this column in the same fold:
-    /// `vehicle`
+    /// Keep all rows with the same value of this column, such as `vehicle`, in the same fold of cross-validation
     #[arg(long, value_name = "COLUMN")]
     group_by: Option<String>,
 
@@ -101,7 +100,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     format: Format,
 
-    /// Print the report as a JSON document
+    /// Print a JSON document instead of text
     #[arg(long)]
     json: bool,
 }
@@ -276,6 +275,7 @@ fn columns(arguments: &Arguments, table: &Table) -> Result<(Vec<String>, Vec<Str
 fn has_numbers(arguments: &Arguments, table: &Table) -> Result<(), Failure> {
     let column = arguments
         .format
+        .layout
         .columns(&[&arguments.target], &table.header)?;
     let help = "for two classes write 0 and 1; `FuzzyClassifier` of the Python package supports words and more than two classes";
     let column = column

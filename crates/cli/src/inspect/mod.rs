@@ -24,7 +24,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     range: RangeArgument,
 
-    /// Print a JSON document for each log
+    /// Print JSON documents instead of text, one for each log
     #[arg(long)]
     json: bool,
 }

@@ -23,7 +23,8 @@ use crate::{
     failure::{Exit, Failure},
     numbers::{self, whole},
     output::Stdout,
-    rows, rule_set,
+    rows::{self, Clamped},
+    rule_set,
 };
 
 #[derive(clap::Args)]
@@ -39,8 +40,8 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 1, value_name = "ROWS", value_parser = whole(1, u64::MAX))]
     min_support: u64,
 
-    /// Minimum confidence of a rule
-    #[arg(long, default_value_t = 0.0, value_name = "DEGREE", value_parser = numbers::degree)]
+    /// Minimum confidence of a rule, from 0 to 1; how it is computed depends on `--resolve`
+    #[arg(long, default_value_t = 0.0, value_name = "CONFIDENCE", value_parser = numbers::degree)]
     min_degree: f64,
 
     /// Add rules for combinations of terms without rows, each from the nearest combination with rows
@@ -58,9 +59,9 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Resolve {
-    /// The row with the highest degree wins, as in the paper
+    /// The row with the highest degree wins, as in the paper; the confidence is its degree
     Strongest,
-    /// The consequent with the highest sum of degrees wins
+    /// The consequent with the highest sum of degrees wins; the confidence is its share of the sum
     Heaviest,
     /// The mean of the rows decides
     Mean,
@@ -88,7 +89,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let name = arguments.rows.rewrite.model.display().to_string();
     let source = rule_set::read(&arguments.rows.rewrite.model)?;
     let whole = &rule_set::document(&source, &name)?.model;
-    let wrong = |error: LearnError| Failure::usage(format!("`{name}`: {error}")).help(error.help());
+    let wrong =
+        |error: LearnError| Failure::unusable(format!("`{name}`"), &error).help(error.help());
     let chain = LastStage::new(whole).map_err(wrong)?;
     let mut model = chain.model().clone();
     if !arguments.keep_rules {
@@ -101,7 +103,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let claims = arguments.rows.claims.about(learned)?;
     let settings = settings(arguments, &claims);
     let mut learner = Learner::new(&model, settings.clone()).map_err(wrong)?;
-    let data = rows::read(&arguments.rows, whole)?;
+    // A learned rule concludes a term, and values beyond the range belong to no term.
+    let data = rows::read(&arguments.rows, whole, Clamped::All)?;
     let mut rows = Vec::with_capacity(data.rows.len());
     let mut refused = data.refused;
     for (row, place) in data.rows {

@@ -9,10 +9,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Arguments, LearnOutcome};
-use crate::{failure::Failure, provenance, rows::word};
-
-/// Maximum number of antecedents without a rule that are listed.
-const SHOWN: usize = 12;
+use crate::{failure::Failure, left_out::listed, provenance, rows::word};
 
 /// The rule set with a provenance step for this command. Degrees are rounded to six digits for readability.
 pub(super) fn rule_set(
@@ -56,9 +53,7 @@ pub(super) fn words(
         "rows       {} used, {} refused",
         learned.samples, outcome.refused_count
     )?;
-    for refused in outcome.refused.iter().take(SHOWN) {
-        writeln!(out, "           {}", visible(refused))?;
-    }
+    listed(out, 11, &outcome.refused, outcome.refused_count)?;
     writeln!(
         out,
         "rules      {rules} learned ({}), {} of them completed from their neighbours; {} kept",
@@ -76,9 +71,8 @@ pub(super) fn words(
         "missing    {} combinations of terms without a rule",
         learned.missing
     )?;
-    for antecedent in learned.missing_antecedents.iter().take(SHOWN) {
-        writeln!(out, "           {}", visible(&antecedent.to_string()))?;
-    }
+    let missing = usize::try_from(learned.missing).unwrap_or(usize::MAX);
+    listed(out, 11, &learned.missing_antecedents, missing)?;
     if !arguments.rows.claims.is_empty() {
         let found = &outcome.counterexamples;
         let holds = if found.is_empty() { "yes" } else { "no" };
@@ -107,6 +101,7 @@ pub(super) fn words(
     }
     let parts = match &arguments.rows.group_by {
         Some(column) => format!("cross-validation over groups of `{}`", visible(column)),
+        None if learned.samples < 10 => "cross-validation".to_owned(),
         None => "10-fold cross-validation".to_owned(),
     };
     match &outcome.errors {

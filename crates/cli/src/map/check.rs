@@ -5,10 +5,10 @@ use std::{io::Write as _, path::Path};
 use flagred_authoring::slice::{Mapped, at};
 use fuzzy::drawing::{short, visible};
 
-use super::MapSource;
+use super::{Arguments, MapSource};
 use crate::{
     failure::{Exit, Failure},
-    output::Stdout,
+    output::{self, Stdout},
     table::{Cell, Table},
 };
 
@@ -24,26 +24,40 @@ struct LargestDifference {
 }
 
 /// Compares the outputs with the columns of the same names.
-pub(super) fn against(path: &Path, evaluated: &MapSource) -> Result<Exit, Failure> {
-    let table = Table::read(path, b',')?;
+pub(super) fn against(
+    path: &Path,
+    arguments: &Arguments,
+    evaluated: &MapSource,
+) -> Result<Exit, Failure> {
+    let table = Table::read(path, arguments.layout.delimiter)?;
     let names: Vec<&str> = evaluated.engine.input_names().collect();
-    let help = "`flagred map --csv` writes such a table";
-    let columns = names.iter().map(|name| table.header.require(name, help));
-    // `map` has no options for the columns of a table.
-    let columns: Result<Vec<usize>, Failure> = columns.collect();
-    let columns = columns.map_err(|failure| failure.help(help))?;
+    let header = &table.header;
+    let columns = arguments.layout.columns(&names, header);
+    let columns = columns.map_err(|failure| match header.names.len() {
+        // A snapshot has at least one input and one output.
+        1 if header.other_delimiter().is_none() => {
+            failure.help("`map --csv` writes such a table; that of `map --values` is for people")
+        }
+        _ => failure,
+    })?;
+    let suffix = &arguments.suffix.suffix;
     let outputs = evaluated.engine.output_names().enumerate();
     let outputs = outputs.filter_map(|(output, name)| {
-        let column = table.header.column(name)?;
+        let name = format!("{name}{suffix}");
+        let column = table.header.column(&name)?;
         Some((output, name, column))
     });
-    let outputs: Vec<(usize, &str, usize)> = outputs.collect();
+    let outputs: Vec<(usize, String, usize)> = outputs.collect();
     if outputs.is_empty() {
         let outputs = evaluated.engine.output_names();
+        let outputs: Vec<String> = outputs.map(|name| format!("{name}{suffix}")).collect();
         let message = format!("`{}` has no column for an output", table.header.file);
-        let known = fuzzy::diagnostic::suggest("", outputs).unwrap_or_default();
-        return Err(Failure::unreadable(message).help(format!("{known}; {help}")));
+        let known = fuzzy::diagnostic::suggest("", outputs.iter().map(String::as_str));
+        let known = known.unwrap_or_default();
+        return Err(Failure::unreadable(message)
+            .help(format!("{known}; `flagred map --csv` writes such a table")));
     }
+    let mut suffixes = Vec::new();
     let mut out = Stdout::text();
     let mut exit = Exit::Clean;
     let file = visible(&table.header.file);
@@ -58,7 +72,8 @@ pub(super) fn against(path: &Path, evaluated: &MapSource) -> Result<Exit, Failur
             ..evaluated.mapped()
         };
         let (differ, worst) = differences(&table, &mapped, &columns, column)?;
-        let (rows, name) = (table.len(), visible(name));
+        suffixes.extend(other_suffix(evaluated, &table, output).filter(|_| worst.is_some()));
+        let (rows, name) = (table.len(), visible(&name));
         let Some(worst) = worst else {
             writeln!(out, "{file}: `{name}` is the same at {rows} points")?;
             continue;
@@ -79,7 +94,22 @@ pub(super) fn against(path: &Path, evaluated: &MapSource) -> Result<Exit, Failur
         )?;
     }
     out.finish()?;
+    if let Some(other) = suffixes.first().filter(|_| suffix.is_empty()) {
+        output::say(&format!(
+            "help: if `eval --suffix {other}` wrote the table, add `--suffix {other}`: the columns without it contain measured values"
+        ));
+    }
     Ok(exit)
+}
+
+/// Returns what follows the name of an output in the name of another column, such as `_rules`.
+fn other_suffix<'t>(evaluated: &MapSource, table: &'t Table, output: usize) -> Option<&'t str> {
+    let output = evaluated.engine.output_names().nth(output)?;
+    let mut columns = table.header.names.iter();
+    columns.find_map(|name| {
+        name.strip_prefix(output)
+            .filter(|suffix| suffix.starts_with('_'))
+    })
 }
 
 /// Returns how many rows differ, and the largest difference. A value that is missing on one side

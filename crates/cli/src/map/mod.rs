@@ -29,6 +29,7 @@ use crate::{
     output::{self, Files, print},
     profile::{self, Loaded},
     rule_set,
+    table::{Layout, Suffix},
 };
 
 #[derive(clap::Args)]
@@ -38,30 +39,30 @@ pub(crate) struct Arguments {
     #[arg(value_name = "RULES")]
     model: PathBuf,
 
-    /// Points along each axis [default: 51; fewer with `--csv` and more than two inputs]
+    /// Points along each axis [default: 51; with `--csv` and more than two inputs fewer, so that there are at most 100,000 in all;
+    /// with `--values`, the table has at most 6 columns and rows]
     #[arg(long, value_name = "POINTS", value_parser = whole(2_u16, 1001))]
     points: Option<u16>,
 
-    /// Fix an input at a value: `battery=0.8`; may be repeated. An input that is neither fixed nor
-    /// an axis is fixed at the middle of its range, or at the peak of a term if the output varies
-    /// more there
+    /// Fix an input at a value: `battery=0.8`; may be repeated. Without this option, inputs that are not axes have the middle
+    /// of their range, or the peak of one of their terms if the output varies more there
     #[arg(long, value_name = "INPUT=VALUE", value_parser = hold)]
     hold: Vec<(String, f64)>,
 
-    /// The input along the horizontal axis, and the part of its range to show: `spread` or
-    /// `spread:0..0.2` [default: the first that is not fixed; pictures show the part where its terms change]
-    #[arg(long, value_name = "INPUT", value_parser = axis)]
+    /// The input along the horizontal axis: `spread`, or with the part of its range to show: `spread:0..0.2`
+    /// [default: the first input that is not fixed; in pictures, the part of its range in which its terms change]
+    #[arg(long, value_name = "INPUT[:LOW..HIGH]", value_parser = axis)]
     x: Option<AxisChoice>,
 
-    /// The input along the vertical axis, as `--x` [default: the next that is not fixed]
-    #[arg(long, value_name = "INPUT", value_parser = axis)]
+    /// The input along the vertical axis, written as for `--x` [default: the next input that is not fixed]
+    #[arg(long, value_name = "INPUT[:LOW..HIGH]", value_parser = axis)]
     y: Option<AxisChoice>,
 
     /// The output to show [default: the last that no other output reads; for a profile, its risk]
     #[arg(long, value_name = "OUTPUT")]
     of: Option<String>,
 
-    /// The file to write, replaced if it exists [default: standard output]
+    /// The file to write, replaced if it exists; `-` is standard output [default: -]
     #[arg(short, long, value_name = "FILE", value_parser = output::text_path)]
     output: Option<PathBuf>,
 
@@ -69,9 +70,9 @@ pub(crate) struct Arguments {
     #[arg(long, value_enum, value_name = "METHOD")]
     fill: Option<Fill>,
 
-    /// With an interpolation: interpolate cells in which all firing strengths are below this [default: depends on AND and the
-    /// terms; 0.5 for the minimum]
-    #[arg(long, value_name = "DEGREE", value_parser = numbers::degree_above_0)]
+    /// Interpolate cells whose coverage, the largest firing strength of a rule, is below this value from 0 to 1; needs an
+    /// interpolation [default: 0.5 if AND is the minimum; otherwise it depends on AND and the terms]
+    #[arg(long, value_name = "STRENGTH", value_parser = numbers::degree_above_0)]
     coverage_below: Option<f64>,
 
     /// Write an SVG picture to this file instead of text; `-` is standard output
@@ -87,7 +88,7 @@ pub(crate) struct Arguments {
     activations: bool,
 
     /// Print values as numbers: a table below the picture; with more than two inputs, a table for each combination of the peaks
-    /// of the other inputs
+    /// and range ends of the other inputs
     #[arg(long, conflicts_with_all = ["svg", "activations", "csv"])]
     values: bool,
 
@@ -105,13 +106,20 @@ pub(crate) struct Arguments {
     )]
     sample: Option<u32>,
 
-    /// Compare the outputs with a table that `map --csv` or `eval` wrote before; exit with 1 if a value differs
+    /// Compare the outputs with a table that `map --csv` or `eval` wrote before; exit with 1 if a value differs. `--suffix`,
+    /// `--column` and `--delimiter` describe this table
     #[arg(
         long,
         value_name = "TABLE.csv",
         conflicts_with_all = ["points", "hold", "x", "y", "of", "output", "svg", "activations", "values", "csv"]
     )]
     check: Option<PathBuf>,
+
+    #[command(flatten)]
+    suffix: Suffix,
+
+    #[command(flatten)]
+    layout: Layout,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -217,6 +225,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         return Err(Failure::usage(format!("`{name}` has two values"))
             .help("use `--hold` once for each input"));
     }
+    let given = arguments.suffix.given().or(arguments.layout.given());
+    if let (None, Some(option)) = (&arguments.check, given) {
+        let failure = Failure::usage(format!("`{option}` needs a table"));
+        return Err(failure.help("name a table with `--check`, or leave the option out"));
+    }
     let read = [&arguments.model].into_iter().chain(&arguments.check);
     let mut files = Files::reading(read)?;
     let svg = files.optional(arguments.svg.as_ref())?;
@@ -227,9 +240,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             let (model, table) = (arguments.model.display(), table.display());
             format!("`flagred map {model} --csv --output {table}` writes it")
         };
-        return check::against(table, &evaluated).map_err(|failure| match table.exists() {
-            true => failure,
-            false => failure.help(write()),
+        return check::against(table, arguments, &evaluated).map_err(|failure| {
+            match table.exists() {
+                true => failure,
+                false => failure.help(write()),
+            }
         });
     }
     if let Some(name) = arguments.output.as_ref().and_then(|path| path.to_str())

@@ -6,12 +6,15 @@ use fuzzy::drawing::{map_text, values_text, visible};
 use super::{Arguments, MapSource, painted, slice};
 use crate::{failure::Failure, output};
 
+/// Maximum number of columns and rows of a table without `--points`.
+const SHOWN: usize = 6;
 /// Maximum number of slices: nobody would read more.
 const MAX_SLICES: usize = 100;
 
 /// Returns the picture and the values of a map of one or two inputs. With more inputs, it returns the values of a slice at every
 /// combination of the peaks of the inputs that are not axes.
 pub(super) fn text(arguments: &Arguments, evaluated: &MapSource) -> Result<String, Failure> {
+    let shown = arguments.points.map_or(SHOWN, usize::from);
     let axes = slice::axes(arguments, evaluated)?;
     let mapped = evaluated.mapped();
     let others = others(&mapped, &axes);
@@ -20,7 +23,7 @@ pub(super) fn text(arguments: &Arguments, evaluated: &MapSource) -> Result<Strin
         for note in notes {
             output::say(&format!("note: {note}"));
         }
-        return Ok(map_text(&slice, painted) + &values_text(&slice));
+        return Ok(map_text(&slice, painted) + &values_text(&slice, shown));
     }
     let slices: usize = others.iter().map(|(_, peaks)| peaks.len()).product();
     if slices > MAX_SLICES {
@@ -47,7 +50,7 @@ pub(super) fn text(arguments: &Arguments, evaluated: &MapSource) -> Result<Strin
             None => format!("{across} to the right"),
         };
         let heading = format!("{break_line}{}\n{}", slice.heading(), visible(&axes));
-        text += &format!("{heading}{}", values_text(&slice));
+        text += &format!("{heading}{}", values_text(&slice, shown));
     }
     Ok(text)
 }

@@ -7,11 +7,13 @@ mod file;
 mod stdout;
 
 use std::{
-    io::Write as _,
+    borrow::Cow,
+    io::{IsTerminal as _, Write as _},
     path::{Path, PathBuf},
 };
 
-pub(crate) use flagred_report::table::{cell, number_or_cell};
+pub(crate) use flagred_report::table::cell;
+use fuzzy::drawing::visible;
 
 pub(crate) use crate::path::{RULES, has_ending};
 
@@ -99,12 +101,44 @@ pub(crate) fn print(output: Option<&Output>, text: &str) -> Result<(), Failure> 
     Ok(())
 }
 
+/// Returns a cell copied from another table: the same text, with hidden characters made visible on a terminal. Bytes that are
+/// not UTF-8 are replaced.
+pub(crate) fn copied(text: &[u8], is_terminal: bool) -> Cow<'_, [u8]> {
+    match (str::from_utf8(text), is_terminal) {
+        (Ok(_), false) => Cow::Borrowed(text),
+        (Err(_), false) => Cow::Owned(String::from_utf8_lossy(text).into_owned().into()),
+        (_, true) => Cow::Owned(visible(&String::from_utf8_lossy(text)).into_owned().into()),
+    }
+}
+
+/// Returns whether an output is a terminal; standard output if there is none.
+pub(crate) fn is_terminal(output: Option<&Output>) -> bool {
+    output.is_none_or(Output::is_stdout) && std::io::stdout().is_terminal()
+}
+
 /// Prints a note on standard error, in one line.
 pub(crate) fn say(note: &str) {
     // If standard error is closed, there is no other way to report that.
-    let _ = writeln!(anstream::stderr(), "{}", fuzzy::drawing::visible(note));
+    let _ = writeln!(anstream::stderr(), "{}", visible(note));
 }
 
 fn is_standard(path: &Path) -> bool {
     path == Path::new("-")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::copied;
+
+    #[test]
+    fn copied_cells_do_not_act_on_a_terminal() {
+        for (text, on_terminal) in [
+            ("-", "-"),
+            ("=A1+2", "=A1+2"),
+            ("a\u{1b}[2J", "a\\u{1b}[2J"),
+        ] {
+            assert_eq!(&*copied(text.as_bytes(), false), text.as_bytes());
+            assert_eq!(&*copied(text.as_bytes(), true), on_terminal.as_bytes());
+        }
+    }
 }

@@ -57,7 +57,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     no_browser: bool,
 
-    /// Write the page to this file instead of serving it: one HTML file that opens offline
+    /// Write the page to this file instead of serving it, one HTML page that opens offline; `-` is standard output
     #[arg(long, value_name = "FILE", value_parser = output::page_path, conflicts_with_all = ["file", "port", "no_browser"])]
     html: Option<PathBuf>,
 

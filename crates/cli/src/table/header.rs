@@ -78,7 +78,7 @@ impl Header {
     }
 
     /// The probable delimiter, if it differs from the chosen one.
-    fn other_delimiter(&self) -> Option<&'static str> {
+    pub(crate) fn other_delimiter(&self) -> Option<&'static str> {
         let [only] = self.names.as_slice() else {
             return None;
         };

@@ -31,7 +31,8 @@ use crate::{
     failure::{Exit, Failure},
     numbers::{self, whole},
     output::{self, Output, Stdout},
-    rows, rule_set,
+    rows::{self, Clamped},
+    rule_set,
     table::Extent,
 };
 
@@ -92,7 +93,7 @@ pub(crate) struct Arguments {
     #[arg(long, conflicts_with = "no_validation")]
     learning_curve: bool,
 
-    /// Also write an SVG picture of the variables that moved, before and after, to this file
+    /// Also write an SVG picture of the variables that moved, before and after, to this file; `-` is standard output
     #[arg(long, value_name = "FILE", value_parser = output::svg_path)]
     svg: Option<PathBuf>,
 }
@@ -254,7 +255,8 @@ fn settings(arguments: &Arguments) -> Result<Settings, Failure> {
 
 /// Returns the usable rows as columns, and the reasons why other rows cannot be used.
 fn data(arguments: &Arguments, model: &Model) -> Result<(Data, Vec<String>), Failure> {
-    let read = rows::read(&arguments.rows, model)?;
+    // Constants approach values beyond the range as far as they may, and `eval` compares with the same values.
+    let read = rows::read(&arguments.rows, model, Clamped::Inputs)?;
     let read = rows::in_range(read, model);
     outcomes(arguments, model, &read)?;
     let (data, refused) = rows::in_columns(read, model.inputs.len(), arguments.loss());

@@ -78,11 +78,10 @@ fn rows_outside_a_range_are_clamped_on_request() {
             format!("{command} fan.yaml rows.csv -o {command}.yaml --no-validation --clamp");
         let (code, _, errors) = run(&typed);
         assert_eq!(code, Some(0), "{errors}");
-        for reported in [
-            "`temperature` is outside its range from 0 to 40 in 1 of 5 rows and clamped to it (first in `rows.csv`, line 3)",
-            "`fan` is outside its range from 0 to 100 in 1 of 5 rows and clamped to it (first in `rows.csv`, line 2)",
-        ] {
-            assert!(errors.contains(reported), "{errors}");
-        }
+        let input = "`temperature` is outside its range from 0 to 40 in 1 of 5 rows and clamped to it (first in `rows.csv`, line 3)";
+        assert!(errors.contains(input), "{errors}");
+        // `tune` uses such values of the output, and `eval` compares with the same values.
+        let output = "`fan` is outside its range from 0 to 100 in 1 of 5 rows and clamped to it (first in `rows.csv`, line 2)";
+        assert_eq!(errors.contains(output), command == "learn", "{errors}");
     }
 }

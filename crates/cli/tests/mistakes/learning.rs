@@ -240,8 +240,7 @@ fn terms_of_type_2_are_named_by_their_keys() {
     let fan = FAN.replace("hot: 30}}", "hot: 30}, blur: 0.05}");
     std::fs::write(folder.path().join("blur.yaml"), fan).unwrap();
     for command in [
-        "export --c blur.yaml",
-        "export --fis blur.yaml",
+        "export --fll blur.yaml",
         "tune blur.yaml rows.csv -o out.yaml",
         "learn blur.yaml rows.csv -o out.yaml",
         "simplify blur.yaml -o out.yaml",

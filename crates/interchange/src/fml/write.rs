@@ -107,7 +107,9 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<WriteResult, Findin
     let mut kinds = model.outputs.iter().map(RuleBaseKind::of);
     let kind = kinds.next().unwrap_or(RuleBaseKind::Mamdani);
     if kinds.any(|other| other != kind) {
-        let message = "the outputs are of different kinds".into();
+        let message =
+            "the outputs are of different kinds, and the file names only one kind for all of them"
+                .into();
         let help = "write one rule set each for the Mamdani, Takagi-Sugeno and Tsukamoto outputs";
         draft.loss("two-kinds", message, help);
     }

@@ -312,6 +312,7 @@ pub(super) fn any_model() -> impl Strategy<Value = Model> {
                     allow: match otherwise {
                         1 => vec![AllowedFinding {
                             finding: "jump".into(),
+                            of: clamp.then(|| name.clone()),
                             because: "limits: of 'the' regulation".into(),
                         }],
                         _ => Vec::new(),

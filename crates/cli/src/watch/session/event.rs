@@ -60,6 +60,7 @@ pub(crate) enum Event {
         /// The MAVLink component of the other watch; null if it is no longer received.
         component: Option<u8>,
         /// Whether this watch sends warnings.
+        #[serde(rename = "speaks")]
         is_sending: bool,
     },
     /// Another vehicle is on the link; it is not followed.
