@@ -17,7 +17,7 @@ use fuzzy::{
 
 use crate::{
     estimator::{Estimator, EstimatorError},
-    profile::{FINDINGS, Profile, ProfileInput},
+    profile::{ALLOW, FINDINGS, Profile, ProfileInput},
     source::{Signal, Statistic, is_angle},
 };
 
@@ -86,16 +86,15 @@ fn examine(
             &["elevated_risk"],
             at,
         ));
-        for risk in &profile.other_risks {
-            let place = ["other_risks", &risk.output, "elevated_risk"];
+        for other in estimator.others() {
+            let risk = other.profile();
+            let place = ["other_risks", &risk.output];
+            thresholds(other, &place, at, &mut found);
             if risk.elevated_risk != profile.elevated_risk {
+                let place = [place[0], place[1], "elevated_risk"];
                 found.extend(elevated_shares(&risk.elevated_risk, &place, at));
             }
-        }
-        for other in estimator.others() {
-            let place = ["other_risks", &other.profile().output];
-            thresholds(other, &place, at, &mut found);
-            found.extend(dropped(profile, other.profile(), &place, at));
+            found.extend(dropped(profile, risk, &place, at));
         }
         for input in &profile.inputs {
             found.extend(signal(input, estimator.engine().model(), signals, at));
@@ -119,7 +118,7 @@ fn allowed(
     };
     let mut spans = Vec::new();
     // The profile was read from the same text, without errors.
-    let all = AllowedFinding::read(node, &FINDINGS, &mut spans, &mut Vec::new());
+    let all = AllowedFinding::read(node, &FINDINGS, ALLOW, &mut spans, &mut Vec::new());
     let entries = all.into_iter().zip(spans);
     entries.filter(|(one, _)| is_one(&one.finding)).unzip()
 }

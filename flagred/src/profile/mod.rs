@@ -90,6 +90,10 @@ pub(crate) const FINDINGS: [&str; 6] = [
     "missing-threshold",
 ];
 
+/// An entry of `allow`, as an example in messages.
+pub(crate) const ALLOW: &str =
+    "{finding: outvoted, of: battery, because: it acts only with other inputs}";
+
 /// The words of a finding for the pilot, by the input that raised the risk.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CauseWords {

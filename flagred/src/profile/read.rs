@@ -17,7 +17,7 @@ mod reliability;
 mod tests;
 mod verdict;
 
-use super::{FINDINGS, OtherRisk, Profile, Sampling};
+use super::{ALLOW, FINDINGS, OtherRisk, Profile, Sampling};
 use crate::{
     accumulator::AccumulatorSettings,
     gap::{GapMethod, GapSettings},
@@ -163,7 +163,7 @@ fn read(tree: &Node, found: &mut Mistakes) -> Option<Profile> {
         findings: findings(&fields, &inputs, found),
         reliability: reliability(&fields, found),
         allow: fields.get("allow").map_or_else(Vec::new, |node| {
-            AllowedFinding::read(node, &FINDINGS, &mut Vec::new(), found)
+            AllowedFinding::read(node, &FINDINGS, ALLOW, &mut Vec::new(), found)
         }),
         inputs,
     };

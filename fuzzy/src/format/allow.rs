@@ -38,24 +38,25 @@ pub(super) fn read(
     spans: &mut Vec<Range<usize>>,
     findings: &mut Vec<Diagnostic>,
 ) -> Vec<AllowedFinding> {
-    AllowedFinding::read(node, &CODES, spans, findings)
+    let example = "{finding: jump, because: limits of the regulation}";
+    AllowedFinding::read(node, &CODES, example, spans, findings)
 }
 
 impl AllowedFinding {
-    /// Reads the value of the key `allow` of a rule set or a profile, whose findings have these `codes`. Appends the span of
-    /// each entry to `spans`, and errors to `findings`.
+    /// Reads the value of the key `allow` of a rule set or a profile, whose findings have these `codes`. `example` is
+    /// an entry for messages. Appends the span of each entry to `spans`, and errors to `findings`.
     pub fn read(
         node: &Node,
         codes: &[&'static str],
+        example: &str,
         spans: &mut Vec<Range<usize>>,
         findings: &mut Vec<Diagnostic>,
     ) -> Vec<AllowedFinding> {
-        let example = example(codes);
         let help = format!("write `allow: [{example}]`, with an entry for each finding");
         let items = node.items("`allow`", &help, findings).unwrap_or_default();
         let mut all: Vec<AllowedFinding> = Vec::new();
         for (i, item) in items.iter().enumerate() {
-            let Some(allowed) = entry(item, i + 1, codes, findings) else {
+            let Some(allowed) = entry(item, i + 1, codes, example, findings) else {
                 continue;
             };
             let is_same =
@@ -74,30 +75,18 @@ impl AllowedFinding {
     }
 }
 
-/// An entry for the first of these codes that messages use as an example.
-fn example(codes: &[&str]) -> &'static str {
-    match codes.contains(&"jump") {
-        true => "{finding: jump, because: limits of the regulation}",
-        false => "{finding: outvoted, of: battery, because: it acts only with other inputs}",
-    }
-}
-
 fn entry(
     node: &Node,
     number: usize,
     codes: &[&'static str],
+    example: &str,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<AllowedFinding> {
     let what = format!("entry {number} of `allow`");
-    let fields = node.fields(
-        &what,
-        &KEYS,
-        &format!("write `{}`", example(codes)),
-        findings,
-    )?;
-    let code = "name a finding of `check`: `finding: jump`";
+    let fields = node.fields(&what, &KEYS, &format!("write `{example}`"), findings)?;
+    let code = format!("name a finding of `check`: `{example}`");
     let reason = "write why it is accepted: `because: limits of the regulation`";
-    let code = fields.require("finding", code, findings).and_then(|node| {
+    let code = fields.require("finding", &code, findings).and_then(|node| {
         let words: Vec<(&str, &'static str)> = codes.iter().map(|code| (*code, *code)).collect();
         let before = findings.len();
         let code = node.choice(&format!("`finding` of {what}"), &words, findings);

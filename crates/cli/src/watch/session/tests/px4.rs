@@ -454,8 +454,7 @@ fn the_landed_state_overrides_idle_motors() {
     assert_eq!(verdict, Verdict::Known(Level::Fail));
 }
 
-/// The landed state may be outdated, and a pilot who has landed may stop the motors before the land detector reports
-/// the landing.
+/// The landed state may be outdated. After a landing, a pilot may also stop the motors before the land detector reports it.
 #[test]
 fn an_old_landed_state_and_stopped_motors_are_not_a_fall() {
     let silent = cut(|bench| bench.px4_beat());
