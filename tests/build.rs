@@ -67,7 +67,7 @@ fn add(tests: &mut String, page: &str, text: &str) {
             .collect();
         let name = format!("page_{name}_{}", i + 1);
         let result = "Result<(), Box<dyn std::error::Error>>";
-        // A block that requires a `text` of the reader is compiled only, because there is no text to run it on.
+        // A block that uses a `text` supplied by the reader is only compiled, because there is no text to run it on.
         if code.find("(text)") < code.find("let text").or(Some(usize::MAX))
             && code.contains("(text)")
         {

@@ -16,7 +16,7 @@ fn main() {
 
 const POINTS: usize = 1024;
 
-/// Evaluates 1024 points, one per call. The time is that of all calls; the throughput counts evaluations.
+/// Evaluates 1024 points, one per call. The measured time is for all calls together; the throughput counts evaluations.
 fn single(bencher: Bencher<'_, '_>, model: &Model) {
     let engine = Engine::new(model).unwrap();
     let mut scratch = engine.scratch();
@@ -66,7 +66,8 @@ fn single_c_four_inputs(bencher: Bencher<'_, '_>) {
     single(bencher, &four_inputs());
 }
 
-/// Evaluates intervals around each of 16 points; the interval of an input is a twentieth of its range wide.
+/// Evaluates the rule set at 16 points with an interval around the value of each input. Each interval is a twentieth of
+/// the input's range wide.
 #[divan::bench]
 fn intervals_b_published(bencher: Bencher<'_, '_>) {
     let engine = Engine::new(&published(false)).unwrap();

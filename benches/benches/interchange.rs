@@ -12,7 +12,7 @@ fn main() {
 
 const RULES: usize = 5_000;
 
-/// Six inputs with five terms each.
+/// Returns a rule set with six inputs of five terms each.
 fn model() -> Model {
     let mut text = String::from("fuzzy: 1\nname: large\ninputs:\n");
     for input in 0..6 {

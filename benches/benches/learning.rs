@@ -20,7 +20,8 @@ fn main() {
 
 const ROWS: usize = 100_000;
 
-/// Rows spread evenly over the inputs, with the value of the rules as the output.
+/// Returns rows that are spread evenly over the ranges of the inputs, with the output of a rule set as the last value,
+/// and that rule set without its rules.
 fn rows() -> (Model, Vec<Row>) {
     let model = four_inputs();
     let engine = Engine::new(&model).unwrap();

@@ -35,8 +35,8 @@ fn commands(i: u32) -> [f64; MOTORS] {
     std::array::from_fn(|n| (0.55 + gust * (t_s * 9.0 + n as f64).sin()).clamp(0.0, 1.0))
 }
 
-/// Measures a run of samples after enough samples to fill the windows. The time is that of the run; the throughput
-/// counts samples.
+/// Measures a run of samples after enough samples to fill the windows. The measured time is for the whole run; the
+/// throughput counts samples.
 fn run(bencher: Bencher<'_, '_>, mut push: impl FnMut(&Sample<'_>)) {
     let flight: Vec<[f64; MOTORS]> = (0..SAMPLES).map(commands).collect();
     let mut i = 0_u32;

@@ -178,7 +178,8 @@ fn sentence(rule: &Rule) -> String {
     )
 }
 
-/// The fastest of many rounds, in ns per call: the speed of the machine without other load.
+/// Returns the time per call in the fastest of many rounds, in ns. The fastest round is the one that other load on the
+/// machine disturbs least.
 fn fastest(calls: usize, mut round: impl FnMut()) -> f64 {
     let mut best = f64::INFINITY;
     let started = Instant::now();

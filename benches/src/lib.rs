@@ -10,7 +10,7 @@ fn triangle(left: f64, peak: f64, right: f64) -> MembershipFunction {
     MembershipFunction::Triangle { left, peak, right }
 }
 
-/// (a): the tipper, 2 inputs, 3 rules, gaussian and trapezoid inputs.
+/// System (a), the tipper: 2 inputs with gaussian and trapezoid terms, 3 rules.
 pub fn tipper() -> Model {
     let gaussian = |mean| MembershipFunction::Gaussian { mean, sd: 1.5 };
     let trapezoid = |left, left_top, right_top, right| MembershipFunction::Trapezoid {
@@ -49,7 +49,8 @@ pub fn tipper() -> Model {
         .build()
 }
 
-/// (bw) and (b): the ten rules of the published method, with or without their degrees as weights.
+/// Systems (bw) and (b): the ten rules of the published method, with their degrees as weights (bw) or without weights
+/// (b).
 pub fn published(weighted: bool) -> Model {
     let mut model = Model::builder("published")
         .input(
@@ -106,8 +107,9 @@ pub fn published(weighted: bool) -> Model {
     model
 }
 
-/// (b2): as (b), with interval type-2 terms. The feet of the upper membership functions are moved outwards by a tenth of the
-/// distance between two terms. The feet of the lower ones are moved inwards by the same distance, and their height is 0.9.
+/// System (b2): like (b), but with interval type-2 terms. The feet of the upper membership functions are moved outwards
+/// by a tenth of the distance between two terms. The feet of the lower ones are moved inwards by the same distance, and
+/// their height is 0.9.
 pub fn published_type2() -> Model {
     let mut model = published(false);
     let widen = |variable: &mut Variable, by: f64| {
@@ -117,7 +119,7 @@ pub fn published_type2() -> Model {
                 MembershipFunction::Triangle { left, peak, right } => {
                     triangle(left - by, peak, right + by)
                 }
-                // The other programs have only trapezoids.
+                // The other programs support only trapezoids.
                 MembershipFunction::RightShoulder { foot, top } => MembershipFunction::Trapezoid {
                     left: foot - by,
                     left_top: top,
@@ -142,8 +144,8 @@ pub fn published_type2() -> Model {
     model
 }
 
-/// (c): 4 inputs of 5 terms and all 625 rules; the index of the consequent is the rounded mean of the indices of the
-/// antecedent's terms.
+/// System (c): 4 inputs of 5 terms and all 625 rules; the index of the consequent is the rounded mean of the indices
+/// of the antecedent's terms.
 pub fn four_inputs() -> Model {
     let terms = ["t0", "t1", "t2", "t3", "t4"];
     let five = |name: &str, high: f64| {
@@ -202,7 +204,7 @@ pub fn overlapping() -> Model {
     model
 }
 
-/// Takagi-Sugeno: 2 inputs of 3 terms, 9 rules that conclude linear functions of the inputs.
+/// A Takagi-Sugeno system: 2 inputs of 3 terms, 9 rules with linear consequents.
 pub fn takagi_sugeno() -> Model {
     let names = ["low", "medium", "high"];
     let mut power = Variable::new("power", 0.0, 100.0);
@@ -250,14 +252,14 @@ pub fn points(model: &Model, count: usize) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// (g): a common system with gaussians: 2 inputs of 5 terms, 25 rules, and an output with `outputs` gaussian terms.
+/// System (g), a common kind with gaussian terms: 2 inputs of 5 terms, 25 rules, and an output with `outputs` terms.
 pub fn gaussians(outputs: usize) -> Model {
     let of = |name: &str, low: f64, high: f64, count: usize| {
         let step = (high - low) / (count - 1) as f64;
         (0..count).fold(Variable::new(name, low, high), |variable, i| {
             let term = MembershipFunction::Gaussian {
                 mean: low + step * i as f64,
-                // Different widths, and none so wide that the term is flat.
+                // The widths differ, but none is so large that the term is flat.
                 sd: step * (0.35 + 0.05 * (i % 3) as f64),
             };
             variable.term(format!("t{i}"), term)

@@ -81,8 +81,9 @@ impl Propositions<'_> {
         None
     }
 
-    /// The first proposition of a rule that is true. `degrees` are those of the literals. They are empty if all rules
-    /// are plain ANDs, where every proposition of a rule that fires is true.
+    /// Returns the first true proposition of a rule, or its first proposition if none is true. `degrees` are the
+    /// degrees of the literals; they are empty if all rules are plain ANDs, because every proposition of a rule that
+    /// fires is then true.
     fn of_rule(&self, rule: usize, degrees: &[f64]) -> Option<usize> {
         let holds = |antecedent: &Proposition| {
             let degree = degrees.get(antecedent.literal as usize);

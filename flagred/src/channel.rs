@@ -1,5 +1,5 @@
-//! Channels: a channel is one quantity observed over one window, with statistics of it. It is plain data that can be in
-//! a constant table; the observed values are in memory of the caller.
+//! Channels: a channel is one quantity that is observed over one window, with its statistics. A channel is plain data
+//! that can be in a constant table; the observed values are in memory that the caller provides.
 
 mod code;
 mod seen;

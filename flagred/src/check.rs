@@ -108,7 +108,7 @@ fn examine(
 /// The code of the findings of [`outvoted`].
 const OUTVOTED: &str = "outvoted";
 
-/// The entries of `allow` whose code is one of some, with their positions.
+/// Returns the entries of `allow` whose code satisfies `is_one`, and the positions of these entries.
 fn allowed(
     at: &ValuePositions,
     is_one: impl Fn(&str) -> bool,
@@ -355,7 +355,7 @@ fn signal(
         return Some(Diagnostic::warning("unknown-signal", place, message).help(help));
     }
     if let Some(name) = carried.find(|name| unit_of(name).is_none())
-        // CSV logs may have signals of any name; only a near miss is a mistake.
+        // CSV logs may have signals of any name, so only a name that resembles a known one is probably a mistake.
         && let Some(meant) = nearest(name, known.iter().map(|(name, _)| *name))
             .or_else(|| nearest(name, Signal::names()))
     {

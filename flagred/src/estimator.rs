@@ -90,7 +90,7 @@ pub enum EstimatorError {
         /// The upper end of the range.
         high: f64,
     },
-    /// The value that is assumed for an input if its signal is missing is outside the range of the input.
+    /// The value to assume for an input with a missing signal is outside the range of the input.
     #[error(
         "`if_missing` of input `{input}` is {value}, but the range of the input is {low} to {high}"
     )]

@@ -47,7 +47,7 @@ const WHOLE_SHARE: f64 = 0.95;
 const MAX_FINDINGS: usize = 1000;
 /// The maximum number of steps that are kept per flight: seven hours at 10 Hz.
 pub const MAX_STEPS: usize = 250_000;
-/// Judged risks that a landing could still withdraw are merged if they are closer together than this, in seconds.
+/// Judged risks that a landing could still withdraw are merged if the time between them is less than this, in seconds.
 const PENDING_S: f64 = 1e-4;
 
 /// The margin below which a motor counts as saturated.
@@ -296,8 +296,8 @@ impl Assessor {
         bytes
     }
 
-    /// Sets the state of a new assessor of the same estimator and craft. It then continues the flight with the same bits as
-    /// the assessor that [`Assessor::state`] was called on.
+    /// Sets the state of a new assessor of the same estimator and craft. The results for the rest of the flight
+    /// are then bit for bit those of the assessor that [`Assessor::state`] was called on.
     ///
     /// # Errors
     ///
@@ -396,7 +396,8 @@ impl Flight {
         }
         let flown_s = last.map_or(0.0, |last| {
             let held_s = (t_s - last.t_s).max(0.0);
-            // The landing may have been at any time within a gap.
+            // If the vehicle landed within a gap, the time of the landing is unknown, so the gap does not count as time
+            // in the air.
             match !sample.is_on_ground() || held_s <= profile.sampling.longest_gap_s {
                 true => held_s,
                 false => 0.0,

@@ -37,17 +37,17 @@ pub(crate) struct Follower {
     /// The time since which the vehicle seems to be on the ground, in seconds; the flight may continue within
     /// [`TOUCH_S`].
     down_since_s: Option<f64>,
-    /// Whether motors that idle mean a landing or began to idle in trouble; `None` while they do not idle.
+    /// Whether idling motors mean a landing, or began to idle during trouble; `None` while they do not idle.
     idle: Option<Idle>,
     /// The last time at which the motors did not idle since the autopilot reported that the vehicle is on the ground,
     /// in seconds.
     lifted_s: Option<f64>,
-    /// Whether the motors idle in the air.
+    /// Whether the vehicle counts as falling, because its motors idle in the air.
     falls: bool,
     last_high_s: Option<f64>,
     last_known_s: Option<f64>,
-    /// During and after an alarm, the last time at which the motors were not known to work as before the alarm, in
-    /// seconds.
+    /// During and after an alarm, the last time at which it was not certain that the motors work as they did
+    /// before the alarm, in seconds.
     in_doubt_s: Option<f64>,
 }
 
@@ -447,7 +447,8 @@ impl Follower {
         }
     }
 
-    /// The level while the risk is unknown: that of an ongoing alarm, and never GOOD.
+    /// The level while the risk is unknown: the level of an ongoing alarm or of another open finding; `None` instead of
+    /// GOOD.
     fn level_in_doubt(&self) -> Option<Level> {
         let level = match self.last_known_s {
             Some(_) if self.in_air_since_s.is_some() => Some(self.level()),

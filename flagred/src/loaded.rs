@@ -111,7 +111,8 @@ pub fn load<E>(
     finish(name, &profile.rules, (source, folder.as_deref()), rules)
 }
 
-/// As [`load`], from a text that was read from a file in `folder`, or from no file.
+/// As [`load`], from the text of a profile. `folder` is the folder of the file that contains the text; `None` if
+/// the text is not from a file.
 ///
 /// # Errors
 /// As [`load`].

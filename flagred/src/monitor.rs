@@ -293,9 +293,9 @@ impl Monitor {
         &self.room.inputs
     }
 
-    /// The 95 % intervals of the inputs after the latest sample, in the order of the profile. The interval of an
-    /// assumed value has no width, nor has that of an input that the risk does not depend on. `None` if the interval of
-    /// another input is unknown.
+    /// The 95 % intervals of the inputs after the latest sample, in the order of the profile. An interval has zero
+    /// width if the value is assumed or the risk does not depend on the input. `None` if the interval of another input
+    /// is unknown.
     pub(crate) fn intervals(&self) -> Option<Vec<Interval>> {
         let (plan, seen) = ((&self.channels[..], &self.inputs[..]), &self.room.seen);
         let feed = Feed {

@@ -164,7 +164,8 @@ pub(crate) fn set_geometry(motors: &mut [Motor], factors: &[Factors]) -> bool {
     is_known
 }
 
-/// The motor opposite this one; of two on one arm, the one that turns the same way.
+/// Returns the motor opposite the given one. If two motors are on the opposite arm, it is the one that turns the same
+/// way as the given motor.
 fn opposite(factors: &[Factors], motor: usize) -> Option<usize> {
     const SAME_PLACE: f64 = 0.1;
     let [roll, pitch, yaw] = *factors.get(motor)?;

@@ -119,7 +119,7 @@ pub enum Unknown {
 /// The conditions under which an input counts as known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sampling {
-    /// The minimum number of samples in a window.
+    /// A gap between two samples that is longer than this, in seconds, resets the state.
     pub min_samples: u32,
     /// The time that a window must cover before it counts, in seconds, or its whole length if that is less; 99 % of it
     /// is enough.

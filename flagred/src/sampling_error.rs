@@ -21,7 +21,8 @@ pub(crate) struct SampledMean {
 }
 
 impl SampledMean {
-    /// The mean of values in order of time, each as its weight and the product of weight and value; `None` without any.
+    /// Computes the mean of values in order of time. Each value is given as its weight and the product of its weight
+    /// and itself. `None` if there are no values.
     pub(crate) fn of(values: impl Iterator<Item = (f64, f64)>) -> Option<SampledMean> {
         let (mut count, mut total, mut sum, mut squares) = (0_u32, 0.0, 0.0, 0.0);
         let mut before = None;
@@ -49,8 +50,8 @@ impl SampledMean {
         })
     }
 
-    /// The Wilson interval of a share of time, the mean of zeros and ones. The number of independent values is the one
-    /// that gives the sampling error; `samples` if all values are equal.
+    /// Returns the Wilson interval of a share of time, which is a mean of zeros and ones. It uses the number of
+    /// independent values that would give this sampling error, or `samples` if all values are equal.
     pub(crate) fn share(&self, share: f64, samples: u32) -> Interval {
         let share = share.clamp(0.0, 1.0);
         // The square of the quantile, divided by the number of independent values.
@@ -94,7 +95,7 @@ mod tests {
     #[test]
     fn the_error_follows_from_the_differences_of_successive_values() {
         let alternating: Vec<f64> = (0..100).map(|i| f64::from(i % 2)).collect();
-        // 99 differences of 1: sqrt(1 / 2 / 100).
+        // With 99 differences of 1, the standard error is sqrt(1 / 2 / 100).
         let expected = quantile(66.0) * 0.005_f64.sqrt();
         approx::assert_abs_diff_eq!(of(&alternating).half_width, expected, epsilon = 1e-12);
         let once: Vec<f64> = (0..100).map(|i| f64::from(i / 50)).collect();

@@ -198,11 +198,11 @@ pub struct Observer {
 }
 
 impl Observer {
-    /// Creates the windows for `sources`, for samples of a craft with its signals.
+    /// Creates an observer that computes the values of `sources` from the samples of a craft.
     ///
     /// # Errors
     ///
-    /// The name of a signal that the craft does not have.
+    /// If the craft does not have a signal of a source; the error is the name of the signal.
     pub fn new<'a>(
         sources: impl IntoIterator<Item = &'a Source>,
         craft: Craft<'_>,
@@ -537,7 +537,8 @@ mod tests {
         }
     }
 
-    /// The values of sources after 60 s of two motors that differ by `apart(t)`, at a sample rate.
+    /// Returns the values of the sources after 60 s in which the commands of two motors deviate from 0.5 by `apart(t)`,
+    /// in opposite directions, sampled at `rate_hz`.
     fn at_rate(sources: &[Source], rate_hz: f64, mut apart: impl FnMut(f64) -> f64) -> Vec<f64> {
         let mut observer = Observer::new(sources, craft(&["battery_v"])).unwrap();
         for i in 0..(60.0 * rate_hz) as u32 {

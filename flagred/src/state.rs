@@ -1,4 +1,5 @@
-//! The state of a flight as bytes. A monitor that is restored from them continues with the same bits.
+//! The state of a flight as bytes. The results of a monitor that is restored from them are bit for bit those of
+//! the original monitor.
 //!
 //! The rules are not part of the state: they come from the estimator of the new monitor.
 
@@ -37,7 +38,7 @@ pub(crate) trait State: Sized {
     /// Appends the value.
     fn save(&self, to: &mut Vec<u8>);
 
-    /// Reads the value; `None` if there are too few bytes, or if they are not such a value.
+    /// Reads the value; `None` if there are too few bytes, or if the bytes do not represent a value of this type.
     fn load(from: &mut Reader<'_>) -> Option<Self>;
 }
 
@@ -93,7 +94,7 @@ pub(crate) fn open<'a>(bytes: &'a [u8], description: &str) -> Result<Reader<'a>,
     Ok(from)
 }
 
-/// FNV-1a, for accidental changes.
+/// The FNV-1a hash, which detects accidental changes.
 fn checksum(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xCBF2_9CE4_8422_2325, |sum, byte| {
         (sum ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01B3)
@@ -222,7 +223,8 @@ impl<T: State> State for Vec<T> {
 
     fn load(from: &mut Reader<'_>) -> Option<Vec<T>> {
         let count = usize::load(from)?;
-        // Each element takes at least a byte, so a wrong count ends with the bytes.
+        // Each element takes at least one byte, so if the count is wrong, reading fails at the end of the bytes at the
+        // latest.
         (0..count).map(|_| T::load(from)).collect()
     }
 }

@@ -68,8 +68,8 @@ pub enum Measure {
     Imbalance,
     /// The difference between a motor and the opposite one, in % of the range.
     PairImbalance,
-    /// The shift of the command of a single motor that is higher than earlier in the flight, in % of the range: the
-    /// motor gives less thrust than commanded.
+    /// The shift of a motor's command if only the command of this motor is higher than earlier in the flight, in %
+    /// of the range: the motor gives less thrust than commanded.
     WeakMotor,
     /// The risk of motors that idle in the air, which is 100 %.
     IdleInAir,
@@ -167,8 +167,8 @@ pub struct VerdictSettings {
     pub warn: LevelSettings,
     /// The conditions for FAIL.
     pub fail: LevelSettings,
-    /// A level is cleared when nothing has held it for this time, in seconds, and is replaced by the level that is
-    /// still held.
+    /// A level is cleared when no threshold has held it for this time, in seconds. It is replaced by the level
+    /// that is still held.
     pub clear_after_s: f64,
     /// In this time after take-off, in seconds, only FAIL is raised; WARN does not count as reached.
     pub quiet_after_take_off_s: f64,
@@ -266,7 +266,8 @@ pub struct Finding {
     pub severity: Level,
     /// The time at which the level was first reached, in seconds.
     pub from_s: f64,
-    /// The time at which the level was first raised, in seconds: `after_s` of the level after it was first reached.
+    /// The time at which the level was first raised, in seconds: when it had been reached for the `after_s` of the
+    /// level.
     pub raised_s: f64,
     /// The time at which the level was raised to FAIL, in seconds; `None` if it was not.
     pub failed_s: Option<f64>,
@@ -299,7 +300,8 @@ pub struct MotorFinding {
     /// The number of a second motor that may be the cause instead, if the commands do not show which of the two.
     #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub or_number: Option<usize>,
-    /// The nearest limit. For an imbalance, whether the motor is below or above its share earlier in the flight.
+    /// The nearest limit. For an imbalance, `Lower` if the command of the motor is below its share earlier in the
+    /// flight or below the opposite motor, `Upper` if it is above.
     pub side: Side,
     /// The mean margin of the motor.
     pub margin_mean: f64,

@@ -13,17 +13,18 @@ mod slots;
 /// The number of slots that the samples of a window are divided into. See [`Window`].
 const SLOTS: usize = 128;
 
-/// A sample that is inside the window for less than this time, in seconds, has left it: timestamps are in microseconds.
+/// A sample counts as outside the window if at most this time of it, in seconds, is inside: timestamps have a
+/// resolution of one microsecond.
 const TIME_RESOLUTION_S: f64 = 1e-6;
 
 /// The statistics of a signal over the last `length_s` seconds.
 ///
-/// The memory is fixed for any sample rate, and the average cost of a sample does not depend on the length (the worst
-/// single sample takes about a hundred merges). The window is divided into 128 slots of time, the samples of a slot are
-/// merged, and the slots form a queue of two stacks with running totals. With up to 128 evenly spaced samples in a
-/// window (64 Hz at 2 s), every sample has its own slot and the statistics are exact. If samples share slots, the
-/// oldest slot counts in proportion to the part of it that is still inside the window, and the extremes may include it
-/// for 1/128 of the length too long.
+/// The memory is fixed for any sample rate, and the average cost of a sample does not depend on the length (the
+/// worst single sample takes about a hundred merges). The window is divided into 128 slots of time, the samples of
+/// a slot are merged, and the slots form a queue of two stacks with running totals. With up to 128 evenly spaced
+/// samples in a window (64 Hz at 2 s), every sample has its own slot and the statistics are exact. If samples
+/// share slots, the oldest slot counts in proportion to the part of it that is still inside the window, and the
+/// extremes may include values that left the window up to 1/128 of its length ago.
 ///
 /// A [`board::Monitor`](crate::board::Monitor) takes it as memory from the caller; a
 /// [`source::Observer`](crate::source::Observer) owns it.

@@ -285,11 +285,15 @@ impl core::error::Error for Findings {}
 
 /// Returns the candidate that an author who wrote `word` probably meant.
 ///
-/// The distance is the number of letters to insert, delete, replace or swap (optimal string alignment), ignoring the case of
-/// ASCII letters. It must not exceed a third of the length of the longer word, or 1 for words of up to four letters. Among
-/// candidates with the same distance the first one is returned. Unless a candidate differs by one letter only, one that
-/// contains all parts of the word is preferred: `battery_remaining_pct` for `battery_pct`. If no candidate is near, one that
-/// starts with the word is returned: `min` is short for `minimum`.
+/// The distance is the number of letters to insert, delete, replace or swap (optimal string alignment), ignoring
+/// the case of ASCII letters. For words of two to four letters it must not exceed 1; for longer words it must
+/// not exceed a third of the length of the longer word, rounded up. Among candidates with the same distance the
+/// first one is returned.
+///
+/// If the word has several parts, a candidate that contains all of them is preferred, unless another candidate
+/// differs by at most one letter: `battery_remaining_pct` is returned for `battery_pct`. If no candidate is
+/// near, a candidate that starts with the word is returned, provided that the word has at least three letters:
+/// `min` is short for `minimum`.
 pub fn nearest<'a>(
     word: &str,
     candidates: impl IntoIterator<Item = &'a str, IntoIter: Clone>,
@@ -341,7 +345,8 @@ pub fn nearest<'a>(
     })
 }
 
-/// Returns whether a name contains all of several parts: `battery_remaining_pct` contains those of `battery_pct`.
+/// Returns whether `parts` consists of several parts separated by `_`, and the name contains all of them:
+/// `battery_remaining_pct` contains the parts of `battery_pct`.
 fn has_parts(name: &[char], parts: &[char]) -> bool {
     let mut parts = parts.split(|c| *c == '_').peekable();
     let several = parts

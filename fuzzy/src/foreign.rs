@@ -3,7 +3,8 @@
 use alloc::{string::String, vec::Vec};
 
 /// The words of MATLAB's Fuzzy Logic Toolbox, scikit-fuzzy, fuzzylite and IEC 61131-7, in lower case without `_`, `-`
-/// and blanks, with their equivalents here. If there are several, those that are valid at the position are used.
+/// and blanks, with the equivalent words of this format. If a word has several equivalents, those that are valid at
+/// its position are used.
 pub(crate) const WORDS: &[(&str, &[&str])] = &[
     // Membership functions.
     ("trimf", &["triangle"]),
@@ -129,7 +130,8 @@ pub(crate) const WORDS: &[(&str, &[&str])] = &[
     ("intensify", &["extremely"]),
 ];
 
-/// The letters of the parameters of membership functions in MATLAB and scikit-fuzzy, with the names here.
+/// The letters of the parameters of membership functions in MATLAB and scikit-fuzzy, with the equivalent names in this
+/// format.
 const LETTERS: &[(&str, &[(&str, &str)])] = &[
     ("bell", &[("a", "width"), ("b", "slope"), ("c", "center")]),
     ("sigmoid", &[("a", "slope"), ("c", "inflection")]),
@@ -186,7 +188,8 @@ pub(crate) fn meant<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str
     candidates.into_iter().filter(is_meant).collect()
 }
 
-/// Returns the parameter of a membership function that a key names: the same name, a letter, or another program's word.
+/// Returns the parameter of a membership function that a key refers to. The key may be the name of the parameter, its
+/// letter, or its name in another program.
 pub(crate) fn parameter<'a>(function: &str, key: &str, names: &[&'a str]) -> Option<&'a str> {
     let letters = LETTERS.iter().find(|(name, _)| *name == function);
     let mut letters = letters.map_or(&[][..], |(_, letters)| letters).iter();

@@ -1,5 +1,5 @@
-//! The shapes of membership functions. A new shape takes a variant of [`MembershipFunction`] and a row in the table of
-//! shapes, both in this file; a formula in `formula`; and an outline in `outline`.
+//! The shapes of membership functions. To add a shape, add a variant of [`MembershipFunction`] and a row in the
+//! table of shapes, both in this file, a formula in `formula`, and an outline in `outline`.
 //!
 //! Formulas that several shapes share are in `straight`, `smooth` and `exponential`.
 
@@ -293,8 +293,8 @@ form::forms! {
 
 #[cfg(feature = "alloc")]
 impl MembershipFunction {
-    /// Returns the parameters in the order of a list: name, role and value. Piecewise and linear shapes and formulas
-    /// have no fixed number of parameters, and return none.
+    /// Returns the name, role and value of each parameter, in the order in which they are written. Piecewise and
+    /// linear shapes and formulas have no fixed number of parameters; the list is empty for them.
     pub fn parameters(&self) -> Vec<(&'static str, Role, f64)> {
         match self.parts() {
             ShapeParts::Fixed(form, values) => {
@@ -342,7 +342,7 @@ impl MembershipFunction {
         }
     }
 
-    /// Returns the number of a constant, or of a linear function or formula that reads no variable.
+    /// Returns the value of a constant, or of a linear function or formula that reads no variable; `None` otherwise.
     #[must_use]
     pub fn number(&self) -> Option<f64> {
         match self {

@@ -27,7 +27,7 @@ pub struct Source {
     tree: OnceLock<Result<Node, Findings>>,
     document: OnceLock<Result<Document, Findings>>,
     engine: OnceLock<Result<Engine, Findings>>,
-    /// Whether another parser read the text, so that the model is not known to be valid.
+    /// Whether the document was parsed by the caller and not from the text in this type. Its model may then be invalid.
     is_from_elsewhere: bool,
 }
 

@@ -183,7 +183,7 @@ fn tags_duplicates_and_numbers_are_handled() {
     assert!(ours(&hexadecimal).is_err() && theirs(&hexadecimal).is_ok());
     // Tags are not supported in rule sets.
     assert!(ours(&rule_set("!!str fan")).is_err() && theirs(&rule_set("!!str fan")).is_ok());
-    // Both report a repeated key as an error; here it is reported with all other findings and its position.
+    // Both this parser and serde reject a repeated key; this parser also reports its position and all other findings.
     let twice = rule_set("fan\nname: fun\nunknown: 1");
     let findings = yaml::parse(&twice).unwrap_err();
     let codes: Vec<&str> = findings.0.iter().map(|finding| finding.code).collect();
@@ -191,7 +191,7 @@ fn tags_duplicates_and_numbers_are_handled() {
     assert!(theirs(&twice).is_err());
 }
 
-/// Names whose order changes when they are sorted.
+/// A rule set whose names are not in alphabetical order.
 const UNSORTED: &str = "
 fuzzy: 1
 name: unsorted
@@ -232,7 +232,7 @@ fn every_format_keeps_the_order_of_inputs_outputs_terms_and_blocks() {
         toml::Value::try_from(&model).unwrap().try_into().unwrap(),
         serde_yaml::from_str(&serde_yaml::to_string(&model).unwrap()).unwrap(),
         ron::from_str(&ron::to_string(&model).unwrap()).unwrap(),
-        // Text written by serde is parsed by the readers of files.
+        // Text written by serde can also be parsed like a rule set file.
         serde_json::to_string(&model).unwrap().parse().unwrap(),
     ];
     let engine = Engine::new(&model).unwrap();
@@ -301,7 +301,7 @@ fn a_bad_entry_of_a_list_is_named() {
 
 #[test]
 fn mappings_that_were_sorted_are_read_as_before() {
-    // The format of earlier versions: the peaks of a partition are sorted by their values.
+    // In the format of earlier versions, a partition is a mapping, and its terms are sorted by their peaks.
     let mut text = UNSORTED.replace("{none: 1, much: 9}", "{much: 9, none: 1}");
     let document = yaml::parse(&text).unwrap();
     assert_eq!(document.model, UNSORTED.parse::<Model>().unwrap());

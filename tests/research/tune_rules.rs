@@ -13,7 +13,8 @@ use flagred_tests::tuning::{
     read, risks_pct, shares, tune, tune_without, with_shares, with_step,
 };
 
-/// Minimum number of critical steps, and also of other steps, with which a real vehicle gets a line.
+/// The minimum number of critical steps, and also of other steps, that a real vehicle must have for its ROC area to be
+/// printed.
 const ENOUGH: usize = 20;
 /// Number of bands of risk in the printed table.
 const PRINTED_BANDS: usize = 10;

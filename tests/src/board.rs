@@ -13,7 +13,8 @@ use flagred_flightlog::{Flight, Options};
 
 use crate::shared_data;
 
-/// The command-line arguments of profiles for on-board monitors: the shipped ones with one risk, and one with a signal.
+/// The command-line arguments of profiles for on-board monitors: the shipped profiles with a single risk, and a profile
+/// with a signal.
 pub const PROFILES: [&str; 3] = [
     "flagred",
     "flagred-paper",

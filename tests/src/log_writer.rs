@@ -1,4 +1,4 @@
-//! Small writers of flight logs, for layouts of which no log may be redistributed.
+//! Small writers of flight logs, for layouts for which no real log may be redistributed.
 
 /// A value of a field.
 #[derive(Debug, Clone, Copy)]
@@ -149,7 +149,7 @@ impl ULog {
         self.message(b'P', &body);
     }
 
-    /// Subscribes to a topic under a number.
+    /// Writes a subscription: assigns the number `id` to an instance of a topic.
     pub fn announce(&mut self, instance: u8, id: u16, name: &str) {
         let mut body = vec![instance];
         body.extend(id.to_le_bytes());

@@ -214,7 +214,7 @@ fn model(seed: u64) -> Option<Model> {
     let Variable { low, high, .. } = output.variable;
     for term in &mut output.variable.terms {
         if let MembershipFunction::Constant { value } = term.membership_function {
-            // A fuzzy output cannot have constants; this term is the same set.
+            // A fuzzy output cannot have constants; this rectangle is the same set.
             term.height *= value;
             term.membership_function = MembershipFunction::Rectangle {
                 left: low,

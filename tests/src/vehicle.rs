@@ -129,7 +129,7 @@ impl StandIn {
         }
     }
 
-    /// Replays the part of a log between two times, and waits until the other side has followed to the end.
+    /// Replays the part of a log between two times, and waits until the other side has processed it to the end.
     pub fn fly(&mut self, flight: &Flight, speed: Speed, from_s: f64, to_s: f64) {
         self.fly_on(flight, speed, from_s, to_s);
         self.settle();
@@ -204,7 +204,7 @@ impl StandIn {
     }
 
     /// Sends a heartbeat of a marker vehicle and waits until the other side reports it. Packets stay in order, so the
-    /// other side has then followed to the end.
+    /// other side has then processed all packets of the flight.
     pub fn settle(&mut self) {
         let Some(progress) = self.progress.clone() else {
             self.linger(Duration::from_millis(200));

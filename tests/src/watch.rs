@@ -141,7 +141,7 @@ impl Watch {
 
     /// Interrupts the watch and returns its output.
     pub fn end(mut self) -> WatchOutput {
-        // The `kill` of the shell: the program of that name is not on every machine.
+        // Uses the `kill` that is built into the shell, because not every machine has a program of that name.
         let interrupted = Command::new("sh")
             .args(["-c", &format!("kill -INT {}", self.child.0.id())])
             .status();

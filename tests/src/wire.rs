@@ -8,7 +8,8 @@ use std::{
 
 use flagred_flightlog::mavlink::Stream;
 
-/// The behaviour of a link. Losses apply in both directions, the rest to packets of the vehicle.
+/// The behaviour of a link. Losses apply in both directions; repetition and reordering apply only to packets of the
+/// vehicle.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Link {
     /// The share of lost packets.
@@ -32,7 +33,8 @@ pub enum Speed {
 pub enum Wire {
     /// Datagrams.
     Udp(UdpSocket),
-    /// A TCP connection, and the bytes still to be written: a radio too sends many small packets at once.
+    /// A TCP connection, and the bytes still to be written. Small packets are collected and sent together, as a radio
+    /// does.
     Tcp(TcpStream, Vec<u8>),
 }
 

@@ -91,7 +91,7 @@ pub fn commands(folder: &Folder) -> Vec<WritingCommand> {
 }
 
 impl WritingCommand {
-    /// The command, without output.
+    /// The command, with its standard output and error discarded.
     pub fn command(&self) -> Command {
         let mut command = flagred();
         command.args(&self.arguments);

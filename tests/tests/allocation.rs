@@ -1,4 +1,4 @@
-//! Evaluation does not allocate, according to an allocator that counts.
+//! Verifies that evaluation does not allocate, with an allocator that counts allocations.
 
 use flagred_tests::random_type2::{OutputTermKind, model};
 use fuzzy::Engine;

@@ -104,8 +104,8 @@ fn every_package_depends_only_on_those_below_it() {
     }
 }
 
-/// Ground truth, and how well a risk predicts it, are measured outside the method: they are unknown on board and in an
-/// assessment.
+/// The package `flagred` measures neither the ground truth nor how well a risk predicts it: both are unknown on board
+/// and in an assessment.
 #[test]
 fn the_method_does_not_measure_how_good_its_risks_are() {
     const SUBJECTS: [&str; 6] = ["attitude", "baseline", "bootstrap", "learn", "roc", "upset"];
@@ -177,8 +177,8 @@ fn the_engine_does_no_io_and_contains_nothing_about_drones() {
     const SUBJECTS: [&str; 7] = [
         "drone", "copter", "motor", "pwm", "mavlink", "flight", "flagred",
     ];
-    // Comments and examples are searched too, except for the names of packages, and except for the comments of these files,
-    // whose examples still use the rules of the paper.
+    // Comments and examples are searched too. Two things are excluded: the names of packages, and the comments of the
+    // files in `paper`, whose examples still use the rules of the paper.
     let paper = ["map/", "learn/", "table/", "table.rs", "engine/batch.rs"];
     for (name, text) in sources("fuzzy/src") {
         let is_test = name.ends_with("tests.rs");

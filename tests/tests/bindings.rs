@@ -1,7 +1,7 @@
 //! The types of documents in the bindings agree with the schemas.
 //!
-//! `UPDATE_DOCUMENTS=1 cargo test --workspace --test bindings` writes those of the npm package. The records of Python are
-//! written by hand, since they have methods and their own docstrings.
+//! `UPDATE_DOCUMENTS=1 cargo test --workspace --test bindings` writes the types of the npm package. The records of
+//! Python are written by hand, since they have methods and their own docstrings.
 
 use std::{collections::BTreeMap, env, fs, path::PathBuf};
 
@@ -155,7 +155,7 @@ fn the_records_of_python_have_the_fields_of_the_documents() {
             .or_insert_with(|| schema::printed(document));
         let mut expected = properties(schema, name);
         match class {
-            // `false` cannot be a name in Python.
+            // In Python, this field is called `is_false`.
             "WarningTime" => {
                 let is_false = expected.remove("false").unwrap();
                 expected.insert("is_false".to_owned(), is_false);

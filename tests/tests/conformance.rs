@@ -298,7 +298,8 @@ fn the_bits_of_the_corpus_are_those_on_file() {
     assert_eq!(known.len(), lines.len());
 }
 
-/// A batch of many rows, with incomplete blocks, tasks and threads.
+/// Evaluates each case as a batch of equal rows, on one thread and on four. The last block and the last task of rows
+/// are incomplete.
 #[test]
 fn batches_on_one_and_many_threads_have_the_bits_of_single_calls() {
     let pools = [1, 4].map(|threads| {

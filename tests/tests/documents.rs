@@ -15,7 +15,8 @@ use std::{
 
 use flagred_tests::{Folder, flagred};
 
-/// Commands for readers that a test does not run: they build the whole workspace, or install programs.
+/// Commands in the documents that these tests do not run, because they download or build the whole workspace, or
+/// install programs.
 const NOT_RUN: [&str; 6] = [
     "cargo test",
     "cargo install",

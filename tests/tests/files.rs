@@ -434,7 +434,7 @@ fn old_or_new(seed: u64, count: usize) {
         let is_new = now == *new;
         match fault {
             Fault::Kill(_) => {}
-            // Only some manual pages are compared, so the page that does not fit on the disk may be another one.
+            // Only some manual pages are compared; the page that does not fit on the disk may be one of the others.
             Fault::FullDisk(_) if is_new && writing.arguments[0] == "man" => {}
             Fault::FullDisk(_) => {
                 assert_eq!(code, if is_new { round.code } else { Some(2) }, "{what}");

@@ -146,7 +146,8 @@ fn header_lines_and_rows_in_another_notation_are_named() {
             Some("save it as UTF-8")
         )
     );
-    // A colon in the name of a column is no header line, and an empty cell at the end of a row is none too many.
+    // A colon in the name of a column does not make its row a header line, and an empty cell at the end of a row does
+    // not count as one cell too many.
     for csv in [
         "a: b,t_s,motor1\n1,0,0.5\n",
         "t_s,motor1,motor2,motor3\n0,0.5,0.5,0.5,\n",
@@ -173,8 +174,8 @@ fn a_row_with_too_few_cells_is_refused() {
     assert_eq!(flight.report.bad_messages, 1);
 }
 
-/// Without the column `in_air`, idle motors end a flight; with it, they are a fall. A flight that is written and read back has
-/// the same verdict.
+/// Without the column `in_air`, idle motors end a flight; with it, they count as a fall. A flight that is written and
+/// read back has the same verdict.
 #[test]
 fn idle_motors_override_an_assumed_time_in_the_air() {
     let idle = |i: usize, t_s: f64, air: &str| {
@@ -226,7 +227,8 @@ fn pulse_widths_in_another_unit_are_refused() {
             &said,
             "name columns of fractions from 0 to 1 `motor1`",
         );
-        // Without limits there is no verdict anyway; `convert` writes such commands. Fractions are named even then.
+        // Without limits no verdict is possible anyway, and `convert` writes such commands, so they are accepted.
+        // Fractions are refused even then.
         let without_limits = read(csv.strip_prefix(HEAD).unwrap());
         assert_eq!(without_limits.is_err(), third == "0.52", "{third}");
     }
@@ -289,7 +291,8 @@ fn a_clock_of_whole_numbers_is_named() {
     assert_eq!(verdict(&csv), "GOOD");
 }
 
-/// A damaged log may contain values that a flight CSV of a user may not; it is converted and read back.
+/// A damaged log may contain values that would be refused in a flight CSV written by a user. `convert` writes them, and
+/// its output is read back.
 #[test]
 fn files_of_convert_are_read_whatever_they_contain() {
     let rows = "t_s,pwm1,pwm2,pwm3,pwm4,in_air\n1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n\

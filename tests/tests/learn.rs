@@ -94,7 +94,8 @@ fn columns_without_a_name_are_ignored() {
     }
 }
 
-/// When such weights were accepted, their sums overflowed: every rule had the same consequent, and the error was NaN.
+/// Earlier versions accepted such weights, and their sums overflowed: every rule had the same consequent, and the error
+/// was NaN.
 #[test]
 fn weights_whose_sums_overflow_are_refused_as_by_tune() {
     let folder = Folder::new();
@@ -509,7 +510,7 @@ fn rules_of_many_inputs_are_learned_without_a_map() {
 fn an_error_over_no_rows_is_unknown() {
     let folder = Folder::new();
     let model = folder.file("model.yaml", VARIABLES);
-    // One row gives one rule; without that rule, there is nothing to fill its gap from.
+    // One row gives one rule; without that rule, there is no other rule from which the gap could be filled.
     let data = folder.file("data.csv", "margin,spread,risk\n0.1,0.1,50\n");
     let out = folder.at("out.yaml");
     let output = learn(&[&model, &data, "-o", &out, "--compare-gaps", "--json"]);

@@ -88,7 +88,8 @@ fn the_geometry_of_logs_is_read() {
         let geometry = flight.geometry.unwrap();
         assert_eq!(geometry.doubt, None, "{log}");
         assert_eq!(geometry.factors.len(), flight.motors.len(), "{log}");
-        // Front right, rear left, front left, rear right, in the terms of either autopilot.
+        // The motors are, in this order: front right, rear left, front left, rear right. ArduPilot and PX4 agree on
+        // this order.
         let signs = |f: &[f64; 3]| f.map(|x| if x.abs() < 0.5 { 0.0 } else { x.signum() });
         if flight.motors.len() == 4 && frame != Some("QUAD/PLUS") {
             let found: Vec<[f64; 3]> = geometry.factors.iter().map(signs).collect();

@@ -86,7 +86,8 @@ fn has_times(log: &str) -> bool {
     log != "aptxt_mechanical_fail.log"
 }
 
-/// Removes the single row in the air that is on the ground in the reference, which has no minimum duration of landings.
+/// Removes the single row that is in the air here but on the ground in the reference. The reference has no minimum
+/// duration of landings.
 fn leave_chatter_out(flight: &mut Flight, truth: &HashMap<String, Vec<Option<f64>>>) {
     let t_s = flight.commands.t_s().to_vec();
     let is_other = |row: &usize| {

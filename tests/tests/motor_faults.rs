@@ -142,8 +142,9 @@ fn wind_and_manoeuvres_are_not_reported_as_a_weak_motor() {
 }
 
 /// Flights without a motor fault that have a finding about a weak motor: a flight with an upset of another kind; a
-/// landing after which the motors run for seconds on the ground; a craft that leans into rising wind and, after FAIL,
-/// no longer does (8 %, for 8 s); and a real flight that a pilot turns over in ACRO, with FAIL, 6 s before its end.
+/// landing after which the motors run for seconds on the ground; a craft that leans into rising wind and no longer
+/// leans after a FAIL (a shift of 8 %, reported for 8 s); and a real flight in which the pilot turns the craft over
+/// in ACRO, with a FAIL 6 s before the end of the flight.
 const NOT_FAULTS: [&str; 4] = ["f240", "n240", "f068", "dronekit_test_01"];
 
 #[test]
@@ -390,7 +391,8 @@ fn a_motor_that_stopped_is_named_and_not_the_one_opposite() {
     assert_eq!((motor.number, motor.or_number), (3, Some(4)));
 }
 
-/// As [`fly`], without noise for motors at 0.
+/// Flies phases at 50 Hz for 80 s, like [`fly`], but without a landing, and without noise, so that the command of a
+/// stopped motor is exactly 0.
 fn fly_clipped(factors: &[Factors], phases: &[Phase<'_>]) -> (Assessment, Vec<Update>) {
     let estimator = shipped::flagred();
     let craft = Craft::new(factors.len()).with_geometry(factors);

@@ -18,7 +18,7 @@ struct Tally {
     models: usize,
     values: usize,
     ill_conditioned: usize,
-    /// Models with maxima whose exported arrays were compared.
+    /// The number of models with maxima whose exported arrays were compared.
     exported_maxima: usize,
     worst: f64,
     wrong: Vec<String>,

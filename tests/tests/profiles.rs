@@ -429,7 +429,7 @@ fn each_risk_needs_only_the_inputs_that_its_rules_read() {
     );
 }
 
-/// A battery as one more vote of the default rules.
+/// Writes a profile whose rules are the default rules and the given rule about the battery; returns its path.
 fn voting(folder: &Folder, rule: &str) -> String {
     let read = |file: &str| fs::read_to_string(format!("{ROOT}/rules/{file}")).unwrap();
     let input =

@@ -115,7 +115,7 @@ fn a_report_has_the_track_and_folded_signals() {
     assert!(html.contains(">0:30</span>"), "minutes since take-off");
     assert!(html.len() < 600_000, "{} bytes", html.len());
 
-    // A log without positions has no track, and no position at 0.
+    // A log without positions has no track, instead of a track at position 0.
     let log = folder.file("log.csv", long_log(20, 10));
     assert!(!report(&[&log], &folder).contains("<figure class=\"track\""));
 }
@@ -207,8 +207,9 @@ fn nothing_in_a_log_is_markup() {
     );
 }
 
-/// Calm for 40 s. Then pairs of motors alternate between near the lower and near the upper limit for 4 s (WARN with the paper's
-/// rules) and, after 20 s of calm, between the limits themselves (FAIL).
+/// Returns the log of a flight that is calm for 40 s. Then pairs of motors alternate between values near the lower
+/// limit and values near the upper limit for 4 s (WARN with the paper's rules) and, after 20 s of calm, between the
+/// limits themselves (FAIL).
 fn saturating_log() -> String {
     let mut log =
         String::from("## pwm_low_us: 1000\n## pwm_high_us: 2000\nt_s,pwm1,pwm2,pwm3,pwm4,in_air\n");

@@ -200,7 +200,7 @@ fn compare(
     }
 }
 
-/// The time from the fault of a flight to the first warning, by kind of fault.
+/// Prints the time from the fault of each flight to the first warning.
 fn faults(flights: &[SimulatedFlight], said: &[ProfileRun]) {
     println!(
         "faults: seconds from the fault to the warning, `-` where none came before the end of the judged time"

@@ -119,7 +119,8 @@ fn reference_flights_get_the_verdict_of_assess_over_every_link() {
     });
 }
 
-/// At the original speed: two minutes per flight, so only on request (`--ignored`).
+/// Replays the flights at the original speed. This takes two minutes per flight, so the test runs only on request
+/// (`--ignored`).
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
 fn reference_flights_get_the_verdict_of_assess_in_real_time() {

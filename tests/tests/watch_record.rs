@@ -67,7 +67,7 @@ fn assess_of_the_recorded_shipped_flight_agrees_with_watch() {
     a_recording_gives_assess_what_watch_said(Path::new(STEADY));
 }
 
-/// No parameter is requested: both assume the same limits, and report that.
+/// No parameter is requested: `watch` and `assess` assume the same limits, and report that.
 #[test]
 fn assess_of_a_recording_without_parameters_agrees_with_watch() {
     let flight = flight(Path::new(STEADY));
@@ -85,8 +85,8 @@ fn assess_of_a_recording_without_parameters_agrees_with_watch() {
     assert_eq!(ready["assumed"], assessed["vehicle"]["assumed"]);
     assert_eq!(ready["assumed"].as_array().unwrap().len(), 3, "{ready}");
     let (share, difference) = compare(&said, &assessed);
-    // There are no lines for the second of waiting for parameters, which is half a minute of the flight at 30 times the speed.
-    // The verdict is that of the whole flight.
+    // The watch prints no risks during the second in which it waits for parameters; at 30 times the speed, this is half
+    // a minute of the flight. The verdict is that of the whole flight.
     assert!(share > 0.6 && difference < 0.1, "{share}, {difference}");
 }
 

@@ -128,7 +128,7 @@ fn garbage_and_extreme_values_are_counted_and_raise_no_alarm() {
             })
             .collect();
         vehicle.raw(&garbage);
-        // Bytes that exceed any packet, and the beginning of a truncated packet.
+        // More bytes than any packet can have, and the beginning of a truncated packet.
         vehicle.raw(&[0xfd; 5000]);
         vehicle.raw(&[0xfd, 30, 0, 0, 1, 1, 1, 36, 0, 0, 9]);
         // Extreme values: invalid pulses, and impossible times.

@@ -40,7 +40,7 @@ struct CSource {
     per: u32,
 }
 
-/// The index of a missing source.
+/// The index that stands for a missing source.
 const NONE: u32 = u32::MAX;
 
 #[derive(Debug, Clone, Copy)]

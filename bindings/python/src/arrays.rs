@@ -10,8 +10,8 @@ pub(crate) struct Arrays<'py> {
 }
 
 impl<'py> Arrays<'py> {
-    /// Converts values to arrays of the same shape. Values that are not such arrays are copied by
-    /// `flagred._arrays.alike`.
+    /// Returns the values as contiguous arrays of the same shape. Values that are not such arrays
+    /// yet are converted by `flagred._arrays.alike`.
     pub(crate) fn new(py: Python<'py>, values: &[Bound<'py, PyAny>]) -> PyResult<Self> {
         if let Some(arrays) = Self::of(values) {
             return Ok(arrays);

@@ -34,7 +34,7 @@ struct ExportedStream(FFI_ArrowArrayStream);
 // SAFETY: the stream owns its batches, which are `Send`, and nothing else refers to it.
 unsafe impl Send for ExportedStream {}
 
-/// Batches as a capsule.
+/// Exports batches as an Arrow stream in a Python capsule.
 pub(crate) fn export(
     py: Python<'_>,
     batches: Vec<RecordBatch>,
@@ -54,7 +54,7 @@ pub(crate) struct ForeignTable {
 
 enum Source {
     Stream(FFI_ArrowArrayStream),
-    /// One batch, until it is read.
+    /// A single batch; `None` after it has been read.
     Batch(Option<StructArray>),
 }
 
@@ -88,7 +88,7 @@ fn import_stream(capsule: &Bound<'_, PyAny>) -> PyResult<ForeignTable> {
     })
 }
 
-/// One batch: an Arrow array of structs.
+/// Imports a table that is a single batch: an Arrow array of structs.
 fn import_batch(capsules: &Bound<'_, PyAny>) -> PyResult<ForeignTable> {
     let pair: Result<(Bound<'_, PyAny>, Bound<'_, PyAny>), PyErr> = capsules.extract();
     let (schema, array) = pair.map_err(|_| mismatched("a pair of capsules"))?;
@@ -219,7 +219,7 @@ fn fields(schema: &FFI_ArrowSchema) -> PyResult<Fields> {
     }
 }
 
-/// A batch with these columns. `arrow` panics if a table violates the protocol.
+/// Converts an Arrow array to a batch with these columns. `arrow` panics if a table violates the protocol.
 fn batch(array: FFI_ArrowArray, fields: &Fields) -> Result<StructArray, String> {
     let broken = || "the Arrow array does not have the columns of its schema".to_owned();
     if array.num_children() != fields.len() {
@@ -234,7 +234,8 @@ fn batch(array: FFI_ArrowArray, fields: &Fields) -> Result<StructArray, String> 
         .map_err(|error| error.to_string())
 }
 
-/// A column of a batch as numbers; NaN is unknown. Rows that are null as a whole are unknown, whatever the column contains.
+/// Returns a column of a batch as numbers; NaN is unknown. If a whole row is null, its value is unknown, whatever the
+/// column contains.
 pub(crate) fn column<'a>(
     name: &str,
     batch: &'a StructArray,

@@ -114,7 +114,7 @@ impl AssessmentData {
         Ok(json_text(assessed, teller))
     }
 
-    /// The interval of the steps in seconds, as the caller chose it.
+    /// The time between two steps in seconds, if the caller chose it.
     fn _step_s(&self) -> Option<f64> {
         self.step_s
     }
@@ -150,7 +150,7 @@ impl AssessmentData {
     }
 }
 
-/// A page in the style of a report, around a body in HTML.
+/// Returns a page in the style of a report, with the given HTML as its body.
 #[pyfunction]
 pub(crate) fn _page(title: &str, body: String) -> String {
     page::around(title, body)

@@ -14,7 +14,7 @@ type ClusterArrays<'py> = (
     u32,
 );
 
-/// Clusters of the rows of a matrix.
+/// Finds clusters of the rows of a matrix.
 #[pyfunction]
 pub(crate) fn _c_means<'py>(
     py: Python<'py>,

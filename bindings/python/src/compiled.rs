@@ -259,7 +259,7 @@ impl CompiledRuleSet {
                 let outcomes = Outcomes::new(py, result.value, reasons, &arrays.shape)?;
                 outcomes.into_bound_py_any(py)
             }
-            // A number, like the result of NumPy for arrays without axes.
+            // Arrays without axes give a number, as in NumPy.
             None if arrays.shape.is_empty() => result.value[0].into_bound_py_any(py),
             None => Ok(result
                 .value

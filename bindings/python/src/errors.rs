@@ -66,7 +66,7 @@ pub(crate) fn read_error(py: Python<'_>, error: &ReadError) -> PyErr {
     }
 }
 
-/// A [`RuleSetError`] whose text contains the drawn findings.
+/// A [`RuleSetError`] whose message shows the findings with the source lines that they refer to.
 pub(crate) fn rule_set_error(py: Python<'_>, findings: &Findings, file: &str, text: &str) -> PyErr {
     match diagnostics(py, findings, file, text) {
         Ok(list) => {

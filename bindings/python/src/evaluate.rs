@@ -21,7 +21,7 @@ use crate::{
 /// The number of rows whose outcomes fit into the cache.
 const BLOCK: usize = 1024;
 
-/// Evaluates tables in sequence; an output that keeps its previous value keeps it from table to table.
+/// Evaluates tables in sequence. If an output keeps its previous value, it also keeps it from one table to the next.
 pub(crate) struct Evaluator<'e> {
     engine: &'e Engine,
     sequence: Option<Sequence<'e>>,
@@ -61,7 +61,8 @@ impl<'e> Evaluator<'e> {
         })
     }
 
-    /// Returns the outcomes of each output. All columns must have `rows` values. The interpreter is released meanwhile.
+    /// Returns the outcomes of each output. All columns must have `rows` values. The interpreter is released during the
+    /// evaluation.
     pub(crate) fn run(
         &mut self,
         py: Python<'_>,

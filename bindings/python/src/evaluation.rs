@@ -37,7 +37,7 @@ pub(crate) struct EvaluationData {
     notes: Vec<String>,
 }
 
-/// A flight, or the path of logs.
+/// A flight, or the path of a log or of a folder with logs.
 #[derive(FromPyObject)]
 pub(crate) enum Log<'py> {
     Flight(PyRef<'py, FlightData>),

@@ -49,7 +49,7 @@ pub(crate) struct FiredRule {
     text: String,
     /// The degree of the rule's condition.
     degree: f64,
-    /// The degree times the weight, after the activation method.
+    /// The firing strength: the degree times the weight, after the activation method was applied.
     strength: f64,
     /// The lower bound of the strength, if the condition reads an interval type-2 term.
     lower: Option<f64>,

@@ -1,4 +1,4 @@
-//! A rule set from rows only: `flagred.identify`.
+//! Identification of a rule set from rows alone: `flagred.identify`.
 
 use std::ops::ControlFlow;
 

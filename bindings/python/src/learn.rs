@@ -1,4 +1,4 @@
-//! Rules from rows: `flagred.learn`.
+//! Learning of rules from rows: `flagred.learn`.
 
 use flagred::gap::GapSettings;
 use flagred_evaluation::learning::{self, Row};

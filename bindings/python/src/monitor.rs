@@ -73,7 +73,7 @@ struct MonitorState {
     motors: usize,
 }
 
-/// Numbers in which Python's `None` becomes NaN: both are unknown.
+/// Replaces Python's `None` by NaN. Both mean that a value is unknown.
 fn numbers(values: &[Option<f64>]) -> Vec<f64> {
     values
         .iter()
@@ -124,8 +124,8 @@ impl MonitorData {
     ) -> PyResult<Update> {
         let commands = numbers(&commands);
         let signals = numbers(&signals);
-        // A command in another unit is refused before the sample is processed, because then all samples of the flight
-        // are wrong.
+        // A command that is not a fraction from 0 to 1 is refused before the sample is processed: its unit is
+        // probably wrong, and then all commands of the flight are wrong.
         if let Some(motor) = commands
             .iter()
             .position(|e| counted(*e).is_nan() && !e.is_nan())

@@ -89,7 +89,7 @@ impl Profile {
         usable(py, name, loaded)
     }
 
-    /// Creates a profile from pickled texts: that of the profile and that of its rule set.
+    /// Creates a profile from the pickled texts of the profile and of its rule set.
     #[staticmethod]
     fn _of_texts(py: Python<'_>, file: &str, profile: String, rules: String) -> PyResult<Self> {
         let [profile, rules] = [profile, rules].map(Source::new);

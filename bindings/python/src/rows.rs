@@ -75,7 +75,7 @@ impl DerivationError {
     }
 }
 
-/// The text of a rule set derived from another one, with the step that created it.
+/// Returns the text of a rule set that was derived from another one, including the provenance step that created it.
 pub(crate) fn with_step(
     begun_with: &str,
     model: &Model,

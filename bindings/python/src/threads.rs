@@ -24,7 +24,7 @@ use crate::errors::data_error;
 /// The pools of this process, by their numbers of threads.
 type Pools = (u32, HashMap<usize, Arc<ThreadPool>>);
 
-/// The number of threads from Python.
+/// Converts the `threads` argument of a Python call to a number.
 pub(crate) fn count(value: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
     value.extract().map_err(|_| {
         let shown = value

@@ -1,4 +1,4 @@
-//! Tuning of numbers on rows: `flagred.tune`.
+//! Tuning of the numbers of a rule set on rows: `flagred.tune`.
 
 use std::{
     ops::ControlFlow,
@@ -96,7 +96,7 @@ impl TuneOptions {
     }
 }
 
-/// Tunes numbers on rows; also returns whether Ctrl-C ended the search before its next step.
+/// Tunes the numbers of a rule set on rows. Also returns whether Ctrl-C ended the search early.
 #[pyfunction]
 #[pyo3(signature = (rule_set, rows, options, threads))]
 pub(crate) fn _tune(

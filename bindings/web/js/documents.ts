@@ -186,7 +186,7 @@ export interface FlightFinding {
   risk_output?: string;
   /** The name of the motor's output in the log. */
   output: string | null;
-  /** The kind of finding: a stable word for programs, such as `fighting_gusts`. */
+  /** The kind of finding: a stable identifier for use by programs, such as `fighting_gusts`. */
   code: string;
   /** What happened, and what it means, for pilots. */
   text: string;

@@ -1,4 +1,4 @@
-//! Results about a rule set, as JSON documents for programs.
+//! The JSON documents of `flagred check` and `flagred explain`.
 
 use flagred::check::OutvotedInput;
 use fuzzy::{check, diagnostic::Diagnostic, engine, model::ProvenanceStep};

@@ -89,12 +89,13 @@ fn is_ours(tree: &Node) -> bool {
     is_numbered || has("inputs") && has("outputs")
 }
 
-/// A tree without its positions in the text.
+/// Converts a tree to JSON, which does not contain the positions in the text.
 fn means(tree: &Node) -> serde_json::Value {
     serde_json::to_value(tree).unwrap_or_default()
 }
 
-/// The text with each rule on one line in the syntax of the rule language, if nothing else is on that line.
+/// Returns the text with its rules in the syntax of the rule language, with keywords in capitals. A rule is left
+/// unchanged if it spans several lines or contains quotation marks or parentheses.
 fn with_capitals(text: &str, document: &Document) -> String {
     let mut changed = text.to_owned();
     let rules = document.model.rules.iter().zip(&document.spans.rules);

@@ -11,9 +11,9 @@ use sha2::{Digest as _, Sha256};
 
 use crate::{Edit, edited, layout::formatted, numbers, rewrite::head};
 
-/// The text of a rule set that a command created, with the step that describes how. If only numbers differ from the
-/// original text, they are changed in that text. Otherwise the rule set is written anew, below the comments at the top
-/// of that text, in the layout of `flagred fmt`.
+/// Returns the text of a rule set that a command created, including the provenance step of that command. If only
+/// numbers differ from the original text, they are changed in that text. Otherwise the rule set is written anew,
+/// below the comments at the top of that text, in the layout of `flagred fmt`.
 ///
 /// # Errors
 /// If the text would not be read back as this rule set, for example because of a number that is not finite.

@@ -27,7 +27,7 @@ pub struct Mapped<'a> {
 /// The maximum number of combinations of fixed values that are tried.
 const MAX_TRIED: usize = 1000;
 
-/// An input is fixed at another value than the middle of its range only if the variation of the output then increases
+/// An input is fixed at a value other than the middle of its range only if this increases the variation of the output
 /// by at least this share of the output's range.
 const NOTICEABLE: f64 = 0.01;
 
@@ -117,8 +117,8 @@ fn cell(mapped: &Mapped<'_>, outcome: &Outcome, point: &[f64]) -> Cell {
     }
 }
 
-/// The part of a variable's range that is shown: the whole range. If the terms change within less than a quarter of it,
-/// it is only that part, with a margin that doubles its width.
+/// Returns the part of a variable's range to show. It is the whole range, unless the terms change only within less than
+/// a quarter of it. In that case it is that part, with margins that double its width.
 pub fn shown(variable: &Variable) -> Scale {
     let (low, high) = (variable.low, variable.high);
     let (first, last) = fuzzy::map::changing(variable);
@@ -198,8 +198,8 @@ pub fn combinations(lists: &[Vec<f64>]) -> Vec<Vec<f64>> {
     })
 }
 
-/// The difference between the lowest and the highest value of the output over all combinations of the peaks of the axes,
-/// as a share of the output's range.
+/// Returns the difference between the lowest and the highest value of the output, as a share of the output's range. The
+/// inputs that are axes take every combination of the peaks of their terms.
 fn variation(mapped: &Mapped<'_>, point: &[f64], axes: &[(usize, Vec<f64>)]) -> f64 {
     let lists: Vec<Vec<f64>> = axes.iter().map(|(_, peaks)| peaks.clone()).collect();
     let mut scratch = mapped.engine.scratch();

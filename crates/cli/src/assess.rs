@@ -97,7 +97,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut subjects = Vec::new();
     let documents: Vec<&Output> = html.iter().chain(&svg).collect();
     let mut out = Stdout::beside(&documents);
-    // Output is queued: reports are written before standard output, whose reader may stop at any time.
+    // If reports are requested, the text for standard output is queued until they are written, because the reader of
+    // standard output may stop at any time.
     let mut waiting = Vec::new();
     let mut exit = Exit::Clean;
     let mut json = Vec::new();

@@ -115,7 +115,7 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
                     let made = visible(&provenance::words(step)).to_string();
                     writeln!(out, "{}: made by {made}", visible(&file))?;
                 }
-                // An entry that accepts nothing is a finding itself.
+                // An entry that accepts no finding is itself reported as a finding.
                 for one in accepted.iter().filter(|one| one.count > 0) {
                     let (code, because) = (visible(&one.finding), visible(&one.because));
                     let of = one

@@ -102,7 +102,7 @@ impl Failure {
         }
     }
 
-    /// Replaces the help by a more specific one if it is `general`.
+    /// Replaces the help by a more specific one if the current help is `general`.
     pub(crate) fn instead_of(mut self, general: &str, help: impl FnOnce() -> String) -> Self {
         if self.help.as_deref() == Some(general) {
             self.help = Some(help());

@@ -138,9 +138,9 @@ pub struct Watch<'e> {
 /// Output of a watch since the previous call.
 #[derive(Debug, Default)]
 pub struct WatchOutput {
-    /// Lines for people.
+    /// The lines of text output.
     pub words: Vec<String>,
-    /// Lines for programs.
+    /// The lines of JSON output.
     pub json: Vec<String>,
     /// The packets to send.
     pub packets: Vec<Vec<u8>>,
@@ -171,7 +171,7 @@ impl<'e> Watch<'e> {
         }
     }
 
-    /// Processes a datagram, and returns the number of packets in it from the vehicle.
+    /// Processes a datagram, and returns how many of its packets come from the vehicle.
     pub fn receive(&mut self, now_s: f64, source: Option<SocketAddr>, datagram: &[u8]) -> usize {
         let mut taken = 0;
         self.stream.push(datagram);

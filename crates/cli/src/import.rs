@@ -25,7 +25,7 @@ pub(crate) struct Arguments {
     /// The function block to read from an FCL file with several
     #[arg(long, value_name = "NAME")]
     block: Option<String>,
-    /// Leave out what a rule set cannot express, also whole rules; results may differ
+    /// Leave out what a rule set cannot express, including whole rules; results may differ
     #[arg(long)]
     lossy: bool,
 }

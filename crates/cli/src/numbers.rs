@@ -74,7 +74,8 @@ fn fraction(text: &str, is_allowed: impl Fn(f64) -> bool, what: &str) -> Result<
 fn real(text: &str, is_allowed: impl Fn(f64) -> bool, what: &str) -> Result<f64, String> {
     let number = text.parse().ok();
     let number = number.filter(|number: &f64| number.is_finite() && is_allowed(*number));
-    // Without this unit, the number would have another meaning.
+    // With one of these units, the bare number would have another meaning in the unit of the option, so the advice does
+    // not contain it.
     let other_unit = ["us", "min", "h"].iter().find(|unit| text.ends_with(*unit));
     number.ok_or_else(|| match (number_advice(text), other_unit) {
         (Some(_), Some(unit)) => format!("{what}, without `{unit}`, in the unit of the option"),

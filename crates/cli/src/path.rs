@@ -52,8 +52,9 @@ pub(crate) fn missing(shown: &str) -> String {
                 .position(|ending| has_ending(Path::new(other), &[ending]))
                 .unwrap_or(RULES.len())
         });
-    // Names are compared without their extensions, which make short names similar: those of files with the same
-    // extension by their letters, those of others only if they are the same.
+    // Only the names without their extensions are compared, because equal extensions would make short names
+    // look similar. A file with the same extension matches if its name is similar; a file with another
+    // extension matches only if its name is equal.
     let stem = |name: &str| {
         let stem = Path::new(name).file_stem().unwrap_or_default();
         stem.to_string_lossy().to_ascii_lowercase()

@@ -1,4 +1,4 @@
-//! `flagred plot`: the terms of every variable, and the curve of a rule set of one input.
+//! `flagred plot`: the terms of every variable, and the curves of a rule set with one input.
 
 use std::{io::Write as _, path::PathBuf};
 

@@ -18,7 +18,7 @@ fn pulse_width(text: &str) -> Result<u16, String> {
     if let Some(width) = text.parse().ok().filter(is_width) {
         return Ok(width);
     }
-    // For example `1100,1900` and `1100-1900`.
+    // Both limits may have been given as one word, as in `1100,1900` or `1100-1900`.
     let parts = text.split([',', '-', ':', ';']).map(str::parse::<u16>);
     let both: Vec<u16> = parts.flatten().filter(is_width).collect();
     Err(match both.as_slice() {

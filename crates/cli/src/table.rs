@@ -151,7 +151,7 @@ pub(crate) fn is_table(path: &Path) -> bool {
     has_ending(path, &["csv", "tsv"])
 }
 
-/// Refuses a table in place of the rule set if a rule set is among the `others`.
+/// Refuses a table that is given in place of the rule set, if one of the `others` is a rule set.
 pub(crate) fn rule_set_first(
     command: &str,
     model: &Path,
@@ -284,7 +284,7 @@ pub(crate) fn open(path: &Path, delimiter: u8) -> Result<(Header, Reader), Failu
 pub(crate) struct Table {
     pub(crate) header: Header,
     records: Vec<(u64, csv::StringRecord)>,
-    /// Position and problem of rows that were skipped, since their number of cells is not that of the header.
+    /// The position and the problem of each row that was skipped because it has more or fewer cells than the header.
     pub(crate) skipped: Vec<String>,
 }
 
@@ -306,7 +306,7 @@ impl Table {
         Table::read_rows(path, format.layout.delimiter, Some(format.skip_bad_rows))
     }
 
-    /// `skip` is the value of `--skip-bad-rows`, if the command has this option.
+    /// Reads a whole table. `skip` is the value of `--skip-bad-rows`, if the command has this option.
     fn read_rows(path: &Path, delimiter: u8, skip: Option<bool>) -> Result<Table, Failure> {
         let (header, mut reader) = open(path, delimiter)?;
         let file = &header.file;
@@ -376,7 +376,7 @@ impl Table {
         self.cell(row, column).trim()
     }
 
-    /// A cell as it is.
+    /// The text of a cell, unchanged.
     pub(crate) fn cell(&self, row: usize, column: usize) -> &str {
         let record = self.records.get(row).map(|(_, record)| record);
         record

@@ -19,7 +19,8 @@ fn flagred(arguments: &[&str], input: &str) -> (Output, String) {
         .unwrap();
     let mut stdin = child.stdin.take().unwrap();
     let input = input.to_owned();
-    // Writes in another thread, since both processes would otherwise wait for each other. A command that ignores its input may have ended.
+    // Writes in another thread, since both processes would otherwise wait for each other. The write may fail, because a
+    // command that ignores its input may already have ended.
     let writer = std::thread::spawn(move || drop(stdin.write_all(input.as_bytes())));
     let output = child.wait_with_output().unwrap();
     writer.join().unwrap();

@@ -49,14 +49,14 @@ fn a_table_of_eval_is_a_snapshot_under_its_suffix() {
     let (code, out, err) = flagred(folder.path(), &[&check[..], &layout].concat());
     let same = "compared.csv: `speed_rules` is the same at 3 points\n";
     assert_eq!((code, out.as_str(), err.as_str()), (Some(0), same, ""));
-    // Without the suffix, the measured column is compared.
+    // Without `--suffix`, the column with the measured values is compared.
     let (code, out, err) = flagred(folder.path(), &[&check[..], &layout[2..]].concat());
     assert_eq!(code, Some(1));
     insta::assert_snapshot!(out + &err, @r"
     compared.csv: `speed` differs at 3 of 3 points, most in line 2, at heat = 5: 1 before, 0 now
     help: if `eval --suffix _rules` wrote the table, add `--suffix _rules`: the columns without it contain measured values
     ");
-    // Explanations have columns of the same names.
+    // The columns of explanations have the same names.
     let explain = ["explain", "fan.yaml", "--rows", "measured.csv"];
     let (code, out, _) = flagred(folder.path(), &[&explain[..], &layout].concat());
     assert_eq!(code, Some(0));

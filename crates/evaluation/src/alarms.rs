@@ -1,7 +1,7 @@
 //! Alarms in calm times, and before upsets.
 //!
-//! An alarm is a WARN or FAIL. It lasts from the time it is raised to the last time its level was reached, without the
-//! time for which the level is held afterwards. A WARN that is raised to FAIL counts as one alarm.
+//! An alarm is a WARN or FAIL. It lasts from the time it is raised to the last time its level was reached; the
+//! time for which the level is held afterwards does not count. A WARN that is raised to FAIL counts as one alarm.
 
 use std::collections::BTreeMap;
 
@@ -190,7 +190,8 @@ impl NeedlessAlarms {
     }
 }
 
-/// The numbers of upsets, by whether an alarm of a profile was on before them or began shortly after them.
+/// Counts of upsets: those before which an alarm of a profile was on, those shortly after which one was raised, and
+/// those without such an alarm.
 #[derive(Default, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct Upsets {

@@ -5,7 +5,7 @@ use flagred_flightlog::Attitude;
 /// Returns the root mean square of the attitude error in degrees. Unknown attitudes are ignored; `None` if all are
 /// unknown.
 ///
-/// # Example: an error of 3 degrees in roll and 4 in pitch is one of 5
+/// # Example: errors of 3 degrees in roll and 4 degrees in pitch are an attitude error of 5 degrees
 /// ```
 /// use flagred_flightlog::Attitude;
 ///

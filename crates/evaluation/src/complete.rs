@@ -9,7 +9,7 @@ use crate::span::Span;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Incomplete {
-    /// The log exceeds the limits of a reader, which left part of it out.
+    /// The log exceeds the limits of the reader, so part of the log was left out.
     #[error("the log exceeds the limits of the reader; left out: {0}")]
     LeftOut(LeftOutCounts),
     /// Required information is missing from the log.

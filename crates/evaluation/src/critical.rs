@@ -106,7 +106,7 @@ impl ErrorRecord {
         record
     }
 
-    /// The largest error after `t_s` and within `horizon_s`, in degrees; `None` if it is unknown.
+    /// The largest error within `horizon_s` seconds after `t_s`, in degrees; `None` if it is unknown.
     pub fn largest_within(&self, t_s: f64, horizon_s: f64) -> Option<f64> {
         let after = |t_s: f64| {
             self.errors
@@ -119,7 +119,7 @@ impl ErrorRecord {
             .reduce(f64::max)
     }
 
-    /// Whether the error becomes critical after `t_s` and within `horizon_s`; `None` if it is unknown.
+    /// Whether the error becomes critical within `horizon_s` seconds after `t_s`; `None` if that is unknown.
     pub fn critical_within(&self, t_s: f64, horizon_s: f64) -> Option<bool> {
         let largest_deg = self.largest_within(t_s, horizon_s)?;
         Some(largest_deg > CRITICAL_ERROR_DEG)

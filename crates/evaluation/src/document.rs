@@ -156,11 +156,11 @@ struct WarningsDocument<'a> {
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct AlarmsDocument<'a> {
-    /// Alarms in calm stretches: at least 20 s, from 5 s after take-off, 10 s away from any error over 5 degrees and
-    /// any tilt over 45 degrees.
+    /// Alarms in calm stretches. A calm stretch is at least 20 s long, begins at least 5 s after take-off, and is at
+    /// least 10 s away from any error over 5 degrees and any tilt over 45 degrees.
     calm_stretches: NeedlessAlarmsDocument,
-    /// Alarms in ordinary flights: the error, as a root mean square over 1 s, is never above 5 degrees, the tilt is
-    /// below 45 degrees, and there is no upset.
+    /// Alarms in ordinary flights. In an ordinary flight the error, as a root mean square over 1 s, never exceeds 5
+    /// degrees, the tilt is below 45 degrees, and there is no upset.
     ordinary_flights: NeedlessAlarmsDocument,
     /// The upsets, classified by the alarms (WARN or FAIL) around them.
     upsets: UpsetsDocument<'a>,
@@ -264,10 +264,11 @@ struct ProfileResultDocument<'a> {
 struct EpisodeDocument {
     #[serde(flatten)]
     episode: Span,
-    /// The start of the warning that announced or answered the episode, in seconds.
+    /// The start, in seconds, of the warning that announced the episode, or else of the first warning that began during
+    /// it.
     warned_s: Option<f64>,
-    /// How long before the episode the warning began, in seconds; negative if it began after the
-    /// start of the episode.
+    /// The lead time: the time from the start of the warning to the start of the episode, in
+    /// seconds; negative if the warning began during the episode.
     lead_s: Option<f64>,
 }
 
@@ -276,7 +277,7 @@ struct EpisodeDocument {
 struct WarningDocument {
     #[serde(flatten)]
     span: Span,
-    /// Whether no episode followed.
+    /// Whether the warning is false: it neither precedes an episode nor begins during or just after one.
     r#false: bool,
 }
 

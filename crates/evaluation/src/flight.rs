@@ -84,7 +84,7 @@ pub(crate) struct ProfileResult {
     /// raised to FAIL counts as one period.
     pub(crate) alarms: Vec<Span>,
     pub(crate) fails: Vec<Span>,
-    /// The periods during which a level was on, matched with the episodes.
+    /// The periods during which the level was WARN or FAIL, matched with the critical episodes.
     pub(crate) matches: WarningMatches,
 }
 

@@ -276,7 +276,7 @@ pub struct MethodErrors {
     /// Errors in which each row counts the same.
     pub by_row: Errors,
     /// The mean over the removed rules of their mean absolute error, so that each rule counts the same, however many
-    /// samples it has. Rules without a predicted row are ignored; NaN if no other rule remains.
+    /// samples it has. Rules without a predicted row are ignored; NaN if no removed rule has one.
     #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub by_rule_mean_absolute: f64,
 }

@@ -67,8 +67,8 @@ struct RankedPrediction {
 /// The areas under the ROC curve and the precision-recall curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Areas {
-    /// The area under the receiver operating characteristic: the share of pairs of a critical and another prediction in
-    /// which the critical one has the higher score; equal scores count half.
+    /// The area under the receiver operating characteristic: the share of pairs of a critical and a non-critical
+    /// prediction in which the critical one has the higher score; equal scores count half.
     pub roc: f64,
     /// The area under precision over recall, as average precision: `sum (recall_n - recall_n-1) precision_n` over the
     /// scores from the highest down.

@@ -8,7 +8,7 @@ use crate::ranking::{
     Areas, Band, Intervals, Prediction, Ranking, RocPoint, WithinGroups, reliability,
 };
 
-/// The kind of flight that is reported separately: its attitude errors are real, but commanded.
+/// The kind of flight that is reported separately, because its attitude errors result from commanded manoeuvres.
 pub(crate) const APART: &str = "manoeuvre";
 
 /// The number of resamples of whole flights from which an interval is computed.

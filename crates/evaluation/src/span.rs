@@ -49,9 +49,10 @@ impl Span {
         (to_s - self.from_s.max(other.from_s)).max(0.0)
     }
 
-    /// Extends `spans` by one time. If `is_so`, the last span grows or a new one begins; otherwise the last span ends.
+    /// Updates `spans` with the next time. If `is_so` is true, the last span is extended or a new one begins;
+    /// otherwise the last span ends.
     ///
-    /// `open` stores the `is_so` of the previous time.
+    /// `open` stores the value of `is_so` between calls.
     pub fn follow(spans: &mut Vec<Span>, open: &mut bool, t_s: f64, is_so: bool) {
         match spans.last_mut().filter(|_| *open && is_so) {
             Some(span) => span.to_s = t_s,

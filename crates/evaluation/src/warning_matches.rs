@@ -22,13 +22,13 @@ pub struct EpisodeMatch {
 }
 
 impl EpisodeMatch {
-    /// Whether a warning that began before the episode was on at its start.
+    /// Whether a warning began before the episode and was still on when the episode started.
     pub fn is_announced(&self) -> bool {
         self.lead_s().is_some_and(|lead_s| lead_s > 0.0)
     }
 
-    /// The lead time: how long before the episode the warning began, in seconds; negative if it
-    /// began after the start of the episode.
+    /// The lead time: the time from the start of the warning to the start of the episode, in
+    /// seconds; negative if the warning began during the episode.
     pub fn lead_s(&self) -> Option<f64> {
         self.warned_s.map(|warned_s| self.episode.from_s - warned_s)
     }
@@ -39,7 +39,7 @@ impl EpisodeMatch {
 pub struct Warning {
     /// The period of the warning, limited to the judged times.
     pub span: Span,
-    /// Whether no episode followed.
+    /// Whether the warning is false; see [`match_warnings`].
     pub is_false: bool,
 }
 
@@ -54,9 +54,9 @@ pub struct WarningMatches {
 
 /// Matches the warnings of a flight with its episodes, within the judged time of the flight.
 ///
-/// A warning is false unless an episode starts while it is on or within 10 s after it, or it begins during an episode
-/// or within 1 s after one. `lost_s` is the time at which the log ended in the air. What followed is unknown, so a
-/// warning that is on at that time, or ended up to 10 s before, is not false.
+/// A warning is not false if an episode starts during the warning or within 10 s after its end, or if the warning
+/// begins during an episode or within 1 s after one. `lost_s` is the time at which the log ended in the air. What
+/// followed is unknown, so a warning that is on at that time, or ended up to 10 s before, is not false.
 ///
 /// # Example: a false warning, and one four seconds ahead
 /// ```

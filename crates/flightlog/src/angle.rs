@@ -1,6 +1,6 @@
 //! Attitude angles from quaternions.
 
-/// An attitude angle, in the order yaw, pitch, roll (ZYX).
+/// One of the attitude angles, for rotations in the order yaw, pitch, roll (ZYX).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Angle {
     Roll,

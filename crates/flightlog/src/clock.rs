@@ -22,7 +22,7 @@ const MAX_BOOTS: usize = 1000;
 pub(crate) enum TimestampDecision {
     /// Accept the message, at this time.
     At(f64),
-    /// The time of the message jumps: hold it until the next message confirms or refutes it.
+    /// The time of the message jumps: hold the message until the next one confirms or refutes its time.
     Wait,
     /// The held message was right: accept it at the first time, and the current one at the second time.
     Confirmed(f64, f64),
@@ -208,7 +208,7 @@ fn is_possible(last_s: Option<f64>, t_s: f64) -> bool {
 mod tests {
     use super::*;
 
-    /// The times at which messages are kept; `None` for dropped ones.
+    /// Returns the times of the messages that are kept, in order.
     fn times_kept(times: &[f64]) -> Vec<f64> {
         let mut clock = Clock::default();
         let mut kept = Vec::new();

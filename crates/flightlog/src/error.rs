@@ -125,7 +125,7 @@ impl ReadError {
     }
 }
 
-/// Description of a log in PX4's first format.
+/// Description of a log in PX4's original format.
 pub(crate) const SDLOG2: &str = "an sdlog2 log (.px4log) of PX4 before ULog";
 
 /// The name of standard input in messages.

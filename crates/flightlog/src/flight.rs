@@ -255,10 +255,11 @@ impl<T> Event<T> {
 
 /// A flight, read from a log.
 ///
-/// Times are in seconds on the log's own clock and never decrease within a series. The clock of ArduPilot and PX4 logs
-/// and of telemetry counts from boot (that of telemetry from the first packet if motor commands contain no time); a
-/// CSV file contains its own times. If a log contains several boots of the autopilot, the clock continues from the end
-/// of the previous boot; [`Flight::boots_s`] contains the start of each boot except the first.
+/// Times are in seconds on the log's own clock and never decrease within a series. The clock of ArduPilot and PX4
+/// logs counts from boot, and so does the clock of telemetry; if the motor commands of telemetry contain no times,
+/// its clock counts from the first packet instead. A CSV file contains its own times. If a log contains several
+/// boots of the autopilot, the clock continues from the end of the previous boot; [`Flight::boots_s`] contains the
+/// start of each boot except the first.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]

@@ -45,8 +45,9 @@ impl<'r> Input<'r> {
         Ok((&self.buffer[..self.end], self.at_end))
     }
 
-    /// Passes windows to `scan`, which returns the number of processed bytes: at least one of every
-    /// window, and at the end of the log (`true`) as many as it can use.
+    /// Passes windows to `scan`, with `true` at the end of the log. `scan` returns the number of
+    /// bytes that it processed: at least one of every window and, at the end of the log, as many as
+    /// it can use.
     pub(crate) fn scan(&mut self, mut scan: impl FnMut(&[u8], bool) -> usize) -> io::Result<()> {
         loop {
             let (window, at_end) = self.window()?;

@@ -150,7 +150,7 @@ impl FileKind {
         help: Some("save it as UTF-8"),
     };
 
-    /// Text that may be meant for another command.
+    /// Kinds of text that may be meant for another command.
     pub(crate) const PLAIN: &[FileKind] = &[
         FileKind::TEXT,
         FileKind::RULES,
@@ -165,9 +165,9 @@ impl FileKind {
         FileKind::PLAIN.contains(&self) || [WEB_PAGE, POINTER].contains(&self.name)
     }
 
-    /// Advice for a file of this kind in place of a log.
+    /// Advice for users who pass a file of this kind instead of a log.
     pub(crate) fn help_for_log(self) -> Option<&'static str> {
-        // Text of a document is not a log.
+        // The advice for a PDF document is to copy its text, but text is not a log.
         self.help.filter(|_| self.name != PDF)
     }
 

@@ -36,7 +36,7 @@ impl Bounds {
     }
 }
 
-/// The number of outputs that may be motors if nothing else names them.
+/// The number of outputs, from the first, that are examined for motors if nothing else names the motors.
 const MAX_LIKE: usize = 8;
 /// The minimum standard deviation of an output that may be a motor, in us.
 const MIN_MOVE_US: f64 = 20.0;
@@ -103,16 +103,16 @@ impl Outputs {
         self.set_back.shift(by_s);
     }
 
-    /// The times at which the clock restarted, ascending: the given boots, and the times at which it was set back so
-    /// that rows were dropped.
+    /// The times at which the clock restarted, ascending: the given boots, and the times at which the clock was set
+    /// back and rows were therefore dropped.
     pub(crate) fn restarts_s(&self, boots_s: &[f64]) -> Vec<f64> {
         let mut restarts_s = [self.set_back.at_s(), boots_s].concat();
         restarts_s.sort_by(f64::total_cmp);
         restarts_s
     }
 
-    /// Estimates the number of motors, for logs in which nothing else determines it: the largest of 8, 6 and 4 for
-    /// which that many of the first outputs move together; `None` if the first 4 do not.
+    /// Estimates the number of motors, for logs in which nothing else determines it: the largest `n` of 8, 6 and 4
+    /// for which the first `n` outputs move together; `None` if the first 4 do not.
     pub(crate) fn like_motors(&self) -> Option<u16> {
         let row = |row: usize| -> [f64; MAX_LIKE] {
             std::array::from_fn(|output| {

@@ -114,8 +114,8 @@ fn is_of_motors(name: &str, throttle: &str) -> bool {
     is_throttle || BEGINNINGS.iter().any(begins) && !name.contains("_FUNC")
 }
 
-/// Returns the name of a number in a table with gaps; for a number without a name, `what` and the
-/// number.
+/// Returns the name of a number in a table that may have gaps. If the number has no name, returns
+/// `what` and the number.
 pub(crate) fn name_of(names: &[&str], number: i64, what: &str) -> String {
     let name = usize::try_from(number)
         .ok()

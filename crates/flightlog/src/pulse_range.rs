@@ -72,7 +72,7 @@ impl PulseRange {
         format!("commands from {low_us} to {high_us} us, {GIVEN}")
     }
 
-    /// Records in a flight, read with this range, that the user gave the range.
+    /// Adds this range to the assumptions of a flight that was read with it.
     ///
     /// # Errors
     ///

@@ -138,8 +138,8 @@ impl Report {
         }
     }
 
-    /// Returns whether the flight has reached a limit: of numbers, of changes or, if `of_boots`, of boots. If so, the
-    /// current message counts as left out.
+    /// Returns whether the flight has reached a limit: the maximum number of values or of changes or, if `of_boots`
+    /// is true, of boots. If so, the current message counts as left out.
     pub(crate) fn leaves_out(&mut self, of_boots: bool) -> bool {
         let StoredCounts { numbers, changes } = self.stored;
         let is_full = of_boots || numbers >= MAX_NUMBERS || changes >= MAX_CHANGES;

@@ -172,8 +172,8 @@ impl Hold<'_> {
     }
 }
 
-/// The order of a row relative to the rows before it. Times never go back: if one does, either this row or the previous
-/// one is damaged.
+/// The order of a row relative to the rows before it. The times of kept rows never go back: if the time of a row does,
+/// either this row or the previous one is damaged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Order {
     /// The row is later than all rows.
@@ -200,8 +200,8 @@ pub(crate) const SET_BACK_S: f64 = 0.2;
 /// The maximum number of entries in [`BackstepDetector::at_s`].
 const MAX_SET_BACK: usize = 1000;
 
-/// Detects a clock that is set back. The kept rows do not show it, because the dropped rows leave no gap in their
-/// times.
+/// Detects when a clock is set back. The kept rows alone do not show it, because dropping rows leaves no gap in
+/// their times.
 #[derive(Debug, Default)]
 pub(crate) struct BackstepDetector {
     /// The time of the previous row, if it was dropped.

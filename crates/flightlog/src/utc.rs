@@ -2,7 +2,8 @@
 
 /// The start of GPS time, 6 January 1980, in seconds since 1970.
 const GPS_EPOCH_S: f64 = 315_964_800.0;
-/// The UTC times, in seconds, from which GPS is ahead of UTC by this number of leap seconds (IERS Bulletin C).
+/// UTC times in seconds, each with the number of leap seconds by which GPS time is ahead of UTC from then on (IERS
+/// Bulletin C).
 const LEAPS: &[(f64, f64)] = &[
     (1_483_228_800.0, 18.0),
     (1_435_708_800.0, 17.0),

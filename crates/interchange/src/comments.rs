@@ -56,8 +56,8 @@ pub(crate) fn keep(text: &str, model: &mut Model, spans: &Spans) {
     }
 }
 
-/// The words of a comment on one line, without comment marks and ruled lines, and without lines that a program writes
-/// about itself.
+/// The text of a comment on one line, without comment marks and lines of dashes or similar characters, and without
+/// lines that programs generate about themselves.
 fn plain(comment: &str) -> String {
     let lines = comment
         .lines()

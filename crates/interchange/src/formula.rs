@@ -77,7 +77,7 @@ pub(crate) fn write(formula: &Formula, own: Option<&str>) -> String {
     formula.fold(&number, &variable, &apply).text
 }
 
-/// The formula with other names.
+/// Returns the formula with each name replaced by the result of `name`.
 pub(crate) fn renamed(formula: &Formula, name: impl Fn(&str) -> String) -> Formula {
     let number = |value: f64| value.to_string();
     let variable = |before: &str| quoted(&name(before));

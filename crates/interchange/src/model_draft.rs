@@ -108,8 +108,8 @@ impl<'t> ModelDraft<'t> {
         false
     }
 
-    /// The value of a word; `part` is the part of the text to show in an error. `what` is the kind of word for the
-    /// message.
+    /// Returns the value of a word. `part` is the part of the text that an error shows; `what` describes the kind
+    /// of word in the message.
     pub(crate) fn word<T: Copy>(
         &mut self,
         format: Format,
@@ -144,8 +144,8 @@ impl<'t> ModelDraft<'t> {
         self.error("unknown-word", part, message, &help);
     }
 
-    /// The ends of a range. An empty range, such as `0 0`, becomes a range of width 1 around it if the output has
-    /// computed values, because these do not depend on the range.
+    /// The ends of a range. If the output has computed values, an empty range such as `0 0` becomes a range of
+    /// width 1 around the same number, because the values do not depend on the range.
     pub(crate) fn range(
         &mut self,
         part: &str,
@@ -161,8 +161,8 @@ impl<'t> ModelDraft<'t> {
         (low - 0.5, high + 0.5)
     }
 
-    /// Whether one more than `count` items are allowed; otherwise an error is reported, once. Every item is compared
-    /// with the earlier ones, so the time grows with the square of their number.
+    /// Whether another item is allowed after `count` items; otherwise an error is reported, once. Every item is
+    /// compared with the earlier ones, so the time grows with the square of their number.
     pub(crate) fn has_room(&mut self, count: usize, most: usize, what: &str, part: &str) -> bool {
         let is_reported = |finding: &Diagnostic| finding.code == "too-large";
         if count >= most && !self.findings.last().is_some_and(is_reported) {

@@ -236,9 +236,9 @@ fn joined(mut parts: Vec<Condition>, join: fn(Vec<Condition>) -> Condition) -> C
     }
 }
 
-/// Writes a rule that [`read`] can parse. The hedges of a conclusion also apply to the conclusions after it; if one
-/// must not have them, several rules with the same condition are written. `None` if a NOT before brackets cannot be
-/// moved inside.
+/// Writes a rule that [`read`] can parse. The hedges of a conclusion also apply to the conclusions after it, so
+/// several rules with the same condition are written if a later conclusion does not have these hedges. `None` if a
+/// NOT before brackets cannot be moved inside.
 pub(crate) fn write(rule: &Rule, operators: Operators, and: &str) -> Option<Vec<String>> {
     let condition = conditions::without_not(&rule.condition, operators)?;
     let mut start = String::from("if ");

@@ -8,7 +8,7 @@ use crate::Format;
 /// read.
 pub(crate) type Words<T> = [(T, [&'static str; 4])];
 
-/// Conjunctions, which are also the implications.
+/// The words for conjunctions, which are also the words for implications.
 pub(crate) const CONJUNCTIONS: &Words<Conjunction> = &[
     (Conjunction::Minimum, ["min", "Minimum", "MIN", "MIN"]),
     (

@@ -12,7 +12,7 @@
 use flagred_interchange::{Format, Losses};
 use fuzzy::{Engine, Model};
 
-/// Names that some format cannot write, or writes in the same way as another one.
+/// Names that some format cannot write, or writes in the same way as another name.
 const NAMES: [&str; 30] = [
     "3d",
     "two words",
@@ -111,7 +111,7 @@ fn quoted(name: &str) -> String {
     format!("'{}'", name.replace('\\', "\\\\").replace('\'', "\\'"))
 }
 
-/// The name of a variable, and those of its terms.
+/// The name of a variable, and the names of its terms.
 struct Variable(String, Vec<String>);
 
 fn rule_set(random: &mut Random) -> String {

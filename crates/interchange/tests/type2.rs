@@ -77,8 +77,8 @@ fn evaluate(model: &Model, inputs: &[f64]) -> fuzzy::Outcome {
 }
 
 /// `fuzzyt2` prints `y = 0.1576` for the inputs 0.1 and 0.5 (issue 10 of the repository
-/// ahmettaskin/type-2-fuzzy-logic-systems-matlab-toolbox). Its numbers are intervals: the left end of the result belongs
-/// to their lower ends, the right end to the upper ones.
+/// ahmettaskin/type-2-fuzzy-logic-systems-matlab-toolbox). The numbers in its rule set are intervals: the left end of
+/// the result is computed from their lower ends, the right end from their upper ends.
 #[test]
 fn the_toolbox_prints_this_value() {
     let low = evaluate(&read(&toolbox("KM", LOWER)), &[0.1, 0.5]).low();
@@ -90,7 +90,7 @@ fn the_toolbox_prints_this_value() {
     assert!((high.unwrap() - 0.76 / 0.9).abs() < 1e-15);
 }
 
-/// All corners of the four firing intervals.
+/// Returns the lowest and the highest weighted average over all corners of the four firing intervals.
 fn corners(x: [f64; 2], numbers: [f64; 4]) -> (f64, f64) {
     let ramp = |x: f64, foot: f64, top: f64| ((x - foot) / (top - foot)).clamp(0.0, 1.0);
     let upper = |x: f64| [ramp(x, 1.5, -0.5), ramp(x, -1.5, 0.5)];

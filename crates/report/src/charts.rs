@@ -41,7 +41,8 @@ pub fn signals(estimator: &Estimator) -> Vec<String> {
     signals
 }
 
-/// Options for reading a log to assess it: all its signals if they are `drawn`, else those that the profile needs.
+/// Options for reading a log to assess it: all signals of the log if a report is `drawn`, otherwise only the signals
+/// that the profile needs.
 pub fn options(estimator: &Estimator, drawn: bool) -> Options {
     let mut options = Options::default();
     let needed = || estimator.profile().signals().into_iter().map(str::to_owned);
@@ -161,7 +162,7 @@ pub(crate) fn level_class(level: Level) -> &'static str {
     }
 }
 
-/// The curve of one value of the steps.
+/// The curve of one quantity over the steps of an assessment.
 fn of_steps(
     steps: &[Step],
     stretch: Stretch,

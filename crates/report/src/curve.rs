@@ -8,7 +8,7 @@ use crate::clock::minutes;
 
 /// The number of spans of time in a thinned curve; each keeps its first, smallest, largest and last value.
 const SPANS: usize = 500;
-/// The number of spans of time in a thinned curve that is one of many.
+/// The number of spans of time in a thinned curve if many curves are drawn.
 pub(crate) const FEW_SPANS: usize = 120;
 
 /// A stretch shorter than this, in seconds, is drawn with a finer resolution of time.

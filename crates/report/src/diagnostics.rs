@@ -69,8 +69,8 @@ pub fn draw(findings: &[Diagnostic], file: &str, text: &str, style: Style) -> St
     drawn
 }
 
-/// A finding with its locations in the displayed text; `is_same` if that equals `text`. Hidden characters in its messages
-/// are made visible.
+/// A finding with its locations in the displayed text; `is_same` is true if the displayed text equals `text`. Hidden
+/// characters in the finding's messages are made visible.
 fn shown(finding: &Diagnostic, text: &str, is_same: bool) -> Diagnostic {
     let at = |offset: usize| match text.get(..offset) {
         Some(before) if !is_same => visible_lines(before).len(),

@@ -103,7 +103,7 @@ pub struct FindingDocument<'a> {
     finding: Finding,
     /// The name of the motor's output in the log.
     output: Option<&'a str>,
-    /// The kind of finding: a stable word for programs, such as `fighting_gusts`.
+    /// The kind of finding: a stable identifier for use by programs, such as `fighting_gusts`.
     code: String,
     /// What happened, and what it means, for pilots.
     text: String,
@@ -112,7 +112,7 @@ pub struct FindingDocument<'a> {
 }
 
 impl<'a> FindingDocument<'a> {
-    /// Creates the document of a finding, with the words of `teller`.
+    /// Creates the document of a finding, described with the context `teller`.
     pub fn new(finding: &'a Finding, teller: FindingContext<'a>) -> Self {
         let Words {
             code, text, advice, ..

@@ -192,7 +192,8 @@ fn positions(finding: &Finding, flight: &Flight) -> Option<String> {
     (!sentences.is_empty()).then(|| sentences.join(" "))
 }
 
-/// The finding with the autopilot's motor numbers instead of the positions in the samples.
+/// Returns the finding with the autopilot's motor numbers. In `finding`, motors are numbered by their order in the
+/// samples.
 pub fn numbered(finding: &Finding, motors: &[Motor]) -> Finding {
     let mut finding = finding.clone();
     let number_of = |place: usize| {

@@ -53,7 +53,7 @@ pub(crate) fn badge(verdict: &Verdict) -> Markup {
     html! { span.badge.(verdict_class(verdict)) { (verdict) } }
 }
 
-/// The heading for the time in which vehicles are assessed.
+/// The label for the time during which the vehicle is assessed, which depends on whether it has motors.
 pub(crate) fn in_the_air(has_motors: bool) -> &'static str {
     match has_motors {
         true => "In the air",

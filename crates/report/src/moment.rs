@@ -24,7 +24,7 @@ pub struct Moment<'a> {
     filled_from: Option<f64>,
     /// Whether an input was outside its range.
     clamped: bool,
-    /// The inputs with the degrees of their terms; empty if one is unknown.
+    /// The inputs with the degrees of their terms; empty if an input that the risk depends on is unknown.
     inputs: Vec<ExplainedInput>,
     /// The units of the inputs, by name; inputs without a unit are omitted.
     units: BTreeMap<&'a str, &'a str>,

@@ -1,4 +1,4 @@
-//! Names of rule sets, for readers.
+//! Converts names of a rule set to words for readers.
 
 use fuzzy::drawing::visible;
 

@@ -39,7 +39,7 @@ pub fn signals(flight: &Flight) -> Vec<Offered<'_>> {
     offered
 }
 
-/// The unit of a signal, as people write it.
+/// The unit of a signal in the usual notation, such as `m/s²` for `m/s2`; empty for the unit `1`.
 fn unit<'a>(signal: &Signal<'a>) -> &'a str {
     match signal.label.unit.as_str() {
         "1" => "",
@@ -64,7 +64,7 @@ pub(crate) fn panels(
     }
 }
 
-/// All signals, each folded and with few points.
+/// Renders all signals, each in a collapsed section and with few points.
 pub(crate) fn folded(flight: &Flight, estimator: &Estimator, timeline: &Timeline) -> Markup {
     let names = signals(flight).into_iter();
     let signals = names.filter_map(|offered| flight.signal(offered.name));

@@ -149,8 +149,8 @@ pub fn svg(subject: &Subject, loaded: &Loaded) -> Option<String> {
     Some(sheet.finish(&format!("{verdict} {}", subject.title())))
 }
 
-/// A page in the style of a report, around a body that the caller provides as HTML. It may not load anything, and shows
-/// no control characters.
+/// A page in the style of a report, around a body that the caller provides as HTML. The page cannot load other
+/// resources, and control characters in it are made visible.
 pub fn around(title: &str, body: String) -> String {
     page(title, &PreEscaped(body))
 }

@@ -8,7 +8,8 @@ use crate::{
     timeline::{Panel, Size, Timeline},
 };
 
-/// Renders a panel; `input` is the index of the rules' input that it shows, which the page's script marks on the map.
+/// Renders a panel. If the panel shows an input of the rules, `input` is the index of that input; the script of the
+/// page uses it to mark the input on the map.
 pub(super) fn panel(panel: &Panel, timeline: &Timeline, input: Option<usize>) -> Markup {
     let class = match panel.size {
         Size::Large => "large",

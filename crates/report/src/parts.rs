@@ -70,7 +70,7 @@ impl Part {
         Part::Texts,
     ];
 
-    /// The name of the part in programs.
+    /// The name of the part, for use by programs.
     pub fn name(self) -> &'static str {
         match self {
             Part::Head => "head",

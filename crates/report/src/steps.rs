@@ -12,8 +12,8 @@ use crate::table::cell;
 /// The default distance between the steps that are shown, in seconds.
 pub const STEP_S: f64 = 0.1;
 
-/// A step as columns and fields, named as in JSON; the inputs of the profile are `input_NAME`, its other risks
-/// `other_risk_NAME`. An unknown value is an empty field.
+/// Returns the columns of a step, each with its name and its field. The names are those in JSON; the inputs of
+/// the profile are `input_NAME`, its other risks `other_risk_NAME`. The field of an unknown value is empty.
 fn row(estimator: &Estimator, step: &Step) -> Vec<(String, String)> {
     let number = |value: Option<f64>| {
         let known = value.filter(|value| value.is_finite());
@@ -37,7 +37,8 @@ fn row(estimator: &Estimator, step: &Step) -> Vec<(String, String)> {
     ]
     .map(|(name, field)| (name.to_owned(), field))
     .to_vec();
-    // A profile may have an input `spread` with another window than the column of that name.
+    // The prefix is needed because a profile may have an input `spread` whose window differs from that of the column
+    // `spread`.
     let inputs = estimator.profile().inputs.iter().enumerate();
     row.extend(inputs.map(|(i, input)| {
         let field = number(step.inputs.get(i).copied());

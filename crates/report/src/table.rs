@@ -11,8 +11,8 @@ use fuzzy::drawing::{visible, visible_lines};
 /// The first characters that make a spreadsheet interpret a cell as a formula.
 const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
 
-/// A text as a cell: hidden characters are made visible, and an apostrophe is added if a spreadsheet would evaluate the
-/// text as a formula.
+/// Converts a text to a cell: hidden characters are made visible, and an apostrophe is added if a spreadsheet would
+/// evaluate the text as a formula.
 pub fn cell(text: &str) -> Cow<'_, str> {
     if text.starts_with(FORMULA) {
         Cow::Owned(format!("'{}", visible(text)))

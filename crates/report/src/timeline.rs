@@ -154,7 +154,8 @@ impl Panel {
         labels
     }
 
-    /// The curves as an SVG element without labels: x is seconds since the start, y the value, upwards.
+    /// The curves as an SVG element without labels. The x axis is the time in seconds since the start; the y axis
+    /// is the value and points upwards.
     ///
     /// `attributes` are the attributes of the element: its position and size within another SVG document, or none.
     pub(crate) fn plot(&self, timeline: &Timeline, attributes: &str) -> String {

@@ -17,7 +17,7 @@ const EARTH_M: f64 = 6_371_008.8;
 const SMALLEST_M: f64 = 20.0;
 /// The number of colours of risk.
 const COLOURS: u32 = 10;
-/// The longest time without a position across which the track is drawn, in seconds.
+/// The longest gap between two positions that the track still bridges, in seconds.
 const LONGEST_GAP_S: f64 = 5.0;
 
 /// A position and the highest risk until the next one.
@@ -253,7 +253,8 @@ fn lines(points: &[Point], place: impl Fn(&Point) -> String) -> String {
     format!(r#"<path class="under" d="{under}"/>{paths}"#)
 }
 
-/// The colour of a tenth of the range of risk; the lightest are too pale for a line.
+/// Returns the colour of a tenth of the range of risk. The lightest colours of the scale are not used, because they are
+/// too pale for a line.
 fn colour(tenth: u32) -> Colour {
     reds(0.18 + 0.82 * f64::from(tenth) / f64::from(COLOURS - 1))
 }

@@ -184,7 +184,8 @@ fn indented(out: &mut impl Write, text: &str) -> io::Result<()> {
     writeln!(out, "     {}", visible(text))
 }
 
-/// The state in which a vehicle is assessed. A vehicle without motors need not fly.
+/// The words for the time in which a vehicle is assessed: a vehicle without motors may not fly at all, so its time is
+/// "in use".
 pub(crate) fn in_the_air(flight: &Flight) -> &'static str {
     match flight.motors.is_empty() {
         true => "in use",
@@ -372,7 +373,7 @@ fn summary(assessed: &Assessment, verbose: bool) -> String {
     text
 }
 
-/// The share of the time in the air in which the risk was unknown, in %; `None` up to 5 %.
+/// The share of the time in the air in which the risk was unknown, in %; `None` if it is at most 5 %.
 pub(crate) fn unknown_share_pct(summary: &Summary) -> Option<f64> {
     let known_pct = 100.0 * summary.assessed_s / summary.in_air_s;
     (known_pct < 95.0).then_some(100.0 - known_pct)

@@ -18,7 +18,7 @@ use crate::{
 /// current values because of it.
 const RIDGE: f64 = 1e-8;
 
-/// The largest ridge. The steps of numbers that the rows do determine are reduced by about this share.
+/// The largest ridge. It shortens the steps of the numbers that the rows do determine by about this share.
 const LARGEST_RIDGE: f64 = 1e-4;
 
 /// The number of rows whose firing strengths are in memory at a time.
@@ -202,8 +202,9 @@ fn ridged(mut squares: DMatrix<f64>, ridge: f64) -> DMatrix<f64> {
     squares
 }
 
-/// Returns a model whose outputs are the firing strengths of the consequents, and the indices of the terms of these
-/// consequents. It has the same rules, but each concludes the constant 1 of a separate output.
+/// Returns a model with one output for each term that the rules conclude, and the indices of these terms. The value
+/// of an output is the firing strength of the rules that conclude its term. The model has the same rules, but they
+/// conclude the constant 1 of these outputs.
 fn probe(model: &Model) -> Option<(Model, Vec<usize>)> {
     let output = model.outputs.first()?;
     let mut probe = model.clone();
@@ -235,8 +236,8 @@ fn probe(model: &Model) -> Option<(Model, Vec<usize>)> {
 
 const ONE: &str = "one";
 
-/// Returns a name that no input can have, because names in parsed rule sets have no trailing
-/// spaces.
+/// Returns the name of the output that contains the firing strength of a term. No input can have
+/// this name, because names in parsed rule sets have no trailing spaces.
 fn strength_of(term: usize) -> String {
     format!("strength of {term} ")
 }
@@ -280,7 +281,7 @@ impl Consequent {
         }
     }
 
-    /// The number of free numbers.
+    /// The number of numbers that may change: the coefficients and the constant, or 0 if the consequent is fixed.
     fn free(&self) -> usize {
         if self.moves {
             self.coefficients.len() + 1
@@ -294,7 +295,7 @@ impl Consequent {
         self.constant + terms.sum::<f64>()
     }
 
-    /// The factor of each free number.
+    /// The factor of each number that may change: the input for a coefficient, 1 for the constant.
     fn factors(&self, x: &dyn Fn(usize) -> f64) -> impl Iterator<Item = f64> {
         let inputs = self.coefficients.iter().map(|(input, _)| x(*input));
         inputs.chain([1.0]).take(self.free())

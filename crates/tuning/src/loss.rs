@@ -95,8 +95,8 @@ fn ranking(predictions: &[f64], truths: &[f64], data: &Data) -> Slopes {
             ]
         })
         .collect();
-    // For a row at each position, the sums over all rows of the other truth: first for a row with truth 0, then for one
-    // with truth 1.
+    // For each position, the sums over the pairs of a row at this position with every row of the other truth: first for
+    // a row with truth 0, then for one with truth 1.
     let sums = [true, false].map(|is_zero| {
         let partners = &masses[usize::from(is_zero)];
         let sum_at = |place: usize| {

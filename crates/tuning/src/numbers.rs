@@ -34,7 +34,7 @@ pub struct ChangedNumber {
     pub after: f64,
 }
 
-/// The numbers that differ.
+/// Returns the numbers that differ between two models.
 pub(crate) fn moved(before: &Model, after: &Model) -> Vec<ChangedNumber> {
     let pairs = numbers(before).into_iter().zip(numbers(after));
     let differ = pairs.filter(|(before, after)| before.value != after.value);

@@ -113,7 +113,7 @@ impl<'a> Objective<'a> {
         predictions.iter().map(value).collect()
     }
 
-    /// The loss of other predictions, with the weights of these rows.
+    /// Returns the loss of other predictions for the same truths, with the weights of the rows in `data`.
     pub(crate) fn measure_of(&self, predictions: &[f64], data: &Data) -> f64 {
         let loss = self.settings.loss;
         loss::measure(loss, predictions, &self.truths, data, self.width)

@@ -31,8 +31,9 @@ const MIN_SHARE: f64 = 1e-3;
 const AT_END: f64 = 1e-9;
 
 impl OrderedPositions {
-    /// Creates positions from `positions`, which ascend from `low` to `high`, each with whether it is fixed. The
-    /// minimum distance of neighbours is `apart`, or their current distance if that is smaller.
+    /// Creates positions from `positions`, which ascend from `low` to `high`; the flag of a position is true if
+    /// the position is fixed. The minimum distance of neighbours is `apart`, or their current distance if that
+    /// is smaller.
     pub(crate) fn new(
         positions: &[(f64, bool)],
         low: f64,
@@ -63,7 +64,7 @@ impl OrderedPositions {
         self.segments.iter().map(Segment::free).sum()
     }
 
-    /// The positions for given free numbers; for zeros they are the original ones.
+    /// The positions for given free numbers. If all free numbers are 0, these are the original positions.
     pub(crate) fn positions(&self, free: &[f64]) -> Vec<f64> {
         let mut rest = free;
         let mut positions = Vec::with_capacity(self.count + 1);

@@ -104,7 +104,8 @@ pub(crate) fn bounds(variable: &Variable, term: &Term, beyond_range: bool) -> (f
     )
 }
 
-/// The start value for a weight of 1, because the search could not change a weight of exactly 1.
+/// The largest weight from which the search starts, and 1 minus the smallest: the search could not change a weight of
+/// exactly 0 or 1.
 const LARGEST_WEIGHT: f64 = 0.98;
 
 impl Parameters {
@@ -537,7 +538,7 @@ impl AnchoredTerm {
         self.parameters.iter().filter(|link| link.is_free()).count()
     }
 
-    /// The parameters for a position of the anchor and free numbers.
+    /// Returns the parameters of the term for a given position of its anchor and given free numbers.
     fn moved(&self, anchor: f64, free: &[f64]) -> Vec<f64> {
         let mut z = free.iter();
         let of_link = |link: &ParameterLink| match link.is_free() {

@@ -27,8 +27,9 @@ const PATIENCE: u32 = 3;
 /// continue.
 pub(crate) type SearchCallback<'a> = dyn FnMut(u32, Option<&Point>) -> ControlFlow<()> + 'a;
 
-/// Searches from given free numbers, for at most `iterations` steps. `watch` is called with each point and can end the
-/// search. A random start may violate a claim: then there is no point until a step satisfies it.
+/// Searches from given free numbers, for at most `iterations` steps. `watch` is called before each step and can end
+/// the search. A random start may violate a claim; the search then has no point to report until a step satisfies all
+/// claims.
 pub(crate) fn search(
     objective: &Objective<'_>,
     parameters: &Parameters,

@@ -150,7 +150,7 @@ fn left_out(
         }
         let mut reported = |progress: &Progress<'_>| watch(fold as u32, progress);
         let tuned = match tune(model, &known, settings, &mut reported) {
-            // A few rows may all have the same truth; the model is then not tuned.
+            // If only a part of the rows is used, they may all have the same truth; the model is then not tuned.
             Err(TuneError::OneClass) if eighths < EIGHTHS => model.clone(),
             tuned => {
                 let tuned = tuned?;

@@ -11,7 +11,8 @@ use fuzzy::{
     rule::{Condition, Rule},
 };
 
-/// `x'(t) = 0.2 x(t - 17) / (1 + x(t - 17)^10) - 0.1 x(t)` starting at 1.2, 0 before; Runge-Kutta with steps of 0.1.
+/// The solution of `x'(t) = 0.2 x(t - 17) / (1 + x(t - 17)^10) - 0.1 x(t)`, where x is 1.2 at t = 0 and 0 before;
+/// computed by the Runge-Kutta method with steps of 0.1.
 fn series(count: usize) -> Vec<f64> {
     const STEP: f64 = 0.1;
     const DELAY: usize = 170;
@@ -40,7 +41,8 @@ fn rows(series: &[f64], from: usize, count: usize) -> Data {
     }
 }
 
-/// Two bells for each input, and a rule with a linear consequent for each of the 16 combinations.
+/// A model with two bell-shaped terms for each input, and a rule with a linear consequent for each of the 16
+/// combinations of terms.
 fn grid(low: f64, high: f64) -> Model {
     let names = ["x18", "x12", "x6", "x0"];
     let mut model = Model::builder("mackey-glass");

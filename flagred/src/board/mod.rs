@@ -83,13 +83,14 @@ pub struct Plan<'a> {
     pub propositions: &'a [Proposition],
 }
 
-/// The words of a finding for the pilot, as in exported profiles: `CAUSES` is indexed by [`Cause::proposition`],
-/// `NOTICES` by [`Finding::measure`](crate::verdict::Finding::measure) for findings without a cause. Placeholders in
-/// braces are to be replaced: `{value}` by [`Cause::value`], `{percent}` by 100 times that, `{peak}` and `{threshold}`
-/// by the values of the finding, `{motor}` by its motor, and `{side}` by `above` or `below`.
+/// The words of a finding for the pilot. An exported profile contains two arrays of them: `CAUSES`, indexed by
+/// [`Cause::proposition`], and `NOTICES`, indexed by [`Finding::measure`](crate::verdict::Finding::measure) for
+/// findings without a cause. Placeholders in braces are to be replaced: `{value}` by [`Cause::value`], `{percent}` by
+/// 100 times that value, `{peak}` and `{threshold}` by the values of the finding, `{motor}` by its motor, and `{side}`
+/// by `above` or `below`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Words<'a> {
-    /// A stable word for programs: lower-case letters, digits and `_`.
+    /// A stable identifier for use by programs: lower-case letters, digits and `_`.
     pub code: &'a str,
     /// A few words, for messages limited to 50 characters.
     pub brief: &'a str,

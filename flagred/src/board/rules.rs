@@ -70,8 +70,8 @@ impl<'a> Rules<'a> {
         }
     }
 
-    // Sums saturate: a damaged table then requires more memory than exists, but never less than it
-    // uses.
+    // The sums saturate. For a damaged table, the result may be more memory than exists, but it is
+    // never less than an evaluation uses.
 
     /// The number of floating-point numbers that an [`Evaluator`] needs.
     pub const fn numbers(&self) -> usize {
@@ -91,7 +91,8 @@ impl<'a> Rules<'a> {
             .saturating_add(sizes.alive as usize)
     }
 
-    /// An upper bound, in bytes, for an evaluator, its memory and the rules, if pieces are aligned to at most 16 bytes.
+    /// An upper bound for the total size of an evaluator, its memory and the rules, in bytes, if no part of them needs
+    /// an alignment of more than 16 bytes.
     pub const fn bytes(&self) -> usize {
         const ALIGNED: usize = 15;
         (size_of::<Rules<'_>>() + size_of::<Evaluator<'_>>() + 8 * ALIGNED)
@@ -114,15 +115,15 @@ impl<'a> Rules<'a> {
 #[derive(Debug)]
 #[doc(hidden)] // For the C interface.
 pub struct RuleMemory<'m> {
-    /// [`Rules::numbers`].
+    /// The floating-point numbers; their count is [`Rules::numbers`].
     pub numbers: &'m mut [f64],
-    /// [`Rules::partials`].
+    /// The partial conjunctions; their count is [`Rules::partials`].
     pub partials: &'m mut [PartialConjunction],
-    /// One for each output of the table.
+    /// The strongest rule of each output of the table.
     pub strongest: &'m mut [StrongestRule],
-    /// [`Rules::outputs`].
+    /// The outcome of each output; the length is [`Rules::outputs`].
     pub outcomes: &'m mut [Outcome],
-    /// The outcomes of a stage: [`Rules::outputs`].
+    /// The outcomes of one stage of a chain; the length is [`Rules::outputs`].
     pub own: &'m mut [Outcome],
 }
 

@@ -1,4 +1,5 @@
-//! The memory of a monitor: provided in parts, as one value that can be static, or allocated.
+//! The memory of a monitor, in three forms: parts that the caller provides, one value that can be static, and allocated
+//! memory.
 
 use fuzzy::table::{Outcome, PartialConjunction, StrongestRule};
 
@@ -41,7 +42,7 @@ pub struct Memory<'m> {
     pub seen: &'m mut [ChannelState],
     /// The window of the last risks.
     pub risks: &'m mut Window,
-    /// One for each motor.
+    /// The state of each motor.
     pub motors: &'m mut [Motor],
 }
 
@@ -77,8 +78,8 @@ impl Plan<'_> {
         }
     }
 
-    /// An upper bound, in bytes, for the plan, the monitor, its memory, and the limits and command of each motor, if
-    /// pieces are aligned to at most 16 bytes.
+    /// An upper bound for the total size of the plan, the monitor, its memory, and the limits and command of each
+    /// motor, in bytes, if no part of them needs an alignment of more than 16 bytes.
     pub const fn bytes(&self, motors: usize) -> usize {
         const ALIGNED: usize = 15;
         let sizes = self.sizes();

@@ -81,7 +81,7 @@ impl ChannelState {
         has_arrived: false,
     };
 
-    /// Resets to no observations, over a window of `window_s` seconds, in place.
+    /// Discards all observations and sets the length of the window to `window_s` seconds, in place.
     fn restart(&mut self, window_s: f64) {
         self.window.restart(window_s);
         self.exponential = Exponential::new(window_s);
@@ -206,7 +206,7 @@ pub(crate) fn push(
         } else if channel.in_bins {
             seen.push_into_bin(bin, (t_s, held_s), now.mean());
         } else if now.weight() > 0.0 {
-            // A sample has the weight of its time, whatever the number of known motors.
+            // A sample is weighted by its duration, whatever the number of known motors.
             let moments = now.scaled(held_s / now.weight());
             seen.window.push(t_s, held_s, &moments);
         } else {

@@ -18,7 +18,7 @@ use crate::{
     verdict::{Level, Threshold},
 };
 
-/// The budget of a search, in evaluated rules and terms: some tens of milliseconds.
+/// The budget of a search: the number of evaluated rules and terms, which take some tens of milliseconds.
 const MAX_STEPS: usize = 3_000_000;
 /// The number of even steps across an input's range that are tried, in addition to the points of its terms.
 const STEPS: u32 = 32;
@@ -35,7 +35,7 @@ pub struct OutvotedInput {
     pub value: f64,
     /// The term to which this value belongs most; `None` if it belongs to none.
     pub term: Option<String>,
-    /// The output that is the risk; of several, the one that raises the highest level.
+    /// The output that is the risk; if there are several, the one that raises the highest level.
     pub risk_output: String,
     /// That risk in %.
     pub risk_pct: f64,

@@ -351,7 +351,7 @@ fn the_author_accepts_findings_by_code_and_name() {
     assert_eq!(check(""), (vec!["outvoted"], Vec::new()));
     let entry = "allow: [{finding: outvoted, of: battery, because: only together}]\n";
     assert_eq!(check(entry), (Vec::new(), vec![1]));
-    // Entries without a finding are findings, and other findings remain.
+    // An entry of `allow` that accepts no finding is reported, and the findings that no entry accepts remain.
     let entries =
         "allow: [{finding: outvoted, of: margin, because: x}, {finding: unit, because: y}]\n";
     let all = vec!["unneeded-allow", "outvoted", "unneeded-allow"];

@@ -11,9 +11,9 @@ use crate::{
     source::{Motors, Signal, Source, Statistic},
 };
 
-/// A longer window, in seconds, causes a warning.
+/// The length of the longest window that causes no warning, in seconds.
 const LONGEST_WINDOW_S: f64 = 600.0;
-/// A longer `after_s` of a level, in seconds, causes a warning.
+/// The longest `after_s` of a level that causes no warning, in seconds.
 const LONGEST_WAIT_S: f64 = 30.0;
 /// Finds windows and times that are so long that their unit is probably wrong.
 pub(super) fn durations(profile: &Profile, at: &ValuePositions, found: &mut Vec<Diagnostic>) {
@@ -123,7 +123,8 @@ pub(super) fn elevated_shares(
     })
 }
 
-/// Finds a minimum of a divisor that the divisor never exceeds, so that it is always the divisor.
+/// Warns about a minimum of a divisor that the divisor never exceeds, so that the input is always divided by the
+/// minimum.
 pub(super) fn least_divisor(
     input: &ProfileInput,
     profile: &Profile,

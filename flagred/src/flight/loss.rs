@@ -11,10 +11,11 @@ const LARGEST_SHARE: f64 = 1.0 / 16.0;
 /// The data that was lost in the air so far.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Losses {
-    /// The latest loss of motors, unless known time has compensated for it.
+    /// The latest period with unknown motor commands; `None` once the known time in and after it is as long as the
+    /// unknown time.
     latest: Option<MotorLoss>,
     longest: Option<MotorLoss>,
-    /// All losses of motors, merged into one.
+    /// All periods with unknown motor commands, merged into one.
     all: Option<MotorLoss>,
     /// The time at which the clock went back, in seconds.
     set_back_s: Option<f64>,

@@ -168,7 +168,7 @@ pub struct NamedStep<'a> {
     judged: bool,
     /// The inputs of the rule set by their names.
     inputs: ByName<'a>,
-    /// The other risks of the profile in %, by the names of their outputs. Only with such risks.
+    /// The other risks of the profile in %, by the names of their outputs. Left out if there are no other risks.
     #[serde(skip_serializing_if = "ByName::is_empty")]
     other_risks: ByName<'a>,
 }

@@ -6,7 +6,8 @@ mod state;
 mod uncertainty;
 mod words;
 
-/// Flies at 50 Hz. Each phase is its duration in seconds, whether it is in the air, and the motor commands.
+/// Simulates a flight at 50 Hz. Each phase consists of its duration in seconds, whether the vehicle is in the air, and
+/// the motor commands.
 fn fly(phases: &[(f64, bool, [f64; 4])]) -> Assessment {
     let estimator = shipped::flagred_paper();
     let mut assessor = Assessor::new(&estimator, Craft::new(4), Some(0.1)).unwrap();

@@ -31,12 +31,12 @@ pub struct RiskInterval {
 #[derive(Debug, Clone)]
 pub(super) struct UncertainRisk {
     estimate: Estimate,
-    /// In the order of the profile.
+    /// The intervals of the inputs, in the order of the profile.
     inputs: Vec<Interval>,
 }
 
 impl UncertainRisk {
-    /// The state after a sample; `None` if the uncertainty of an input is unknown.
+    /// Creates the uncertain risk after a sample; `None` if the uncertainty of an input is unknown.
     pub(super) fn of(monitor: &Monitor, estimate: Estimate) -> Option<UncertainRisk> {
         let inputs = match estimate == Estimate::FALL {
             true => Vec::new(),
@@ -62,8 +62,8 @@ pub(super) struct UncertainPeak {
 }
 
 impl UncertainPeak {
-    /// Keeps the state after a sample if the risk of this sample is the highest of the open finding so far. `peaks` has
-    /// one element for each finding, the open one last.
+    /// Stores the intervals of the inputs after a sample if the risk of this sample is the highest of the open finding
+    /// so far. `peaks` has one element for each finding, the open one last.
     pub(super) fn keep(peaks: &mut Vec<UncertainPeak>, monitor: &Monitor, estimate: Estimate) {
         let open = monitor.open_of_risk();
         let Some(open) = open

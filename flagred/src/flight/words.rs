@@ -24,7 +24,7 @@ use crate::{
 /// The words of a finding for the pilot.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Words {
-    /// A stable word for programs: lower-case letters, digits and `_`.
+    /// A stable identifier for use by programs: lower-case letters, digits and `_`.
     pub code: String,
     /// A few words, for messages limited to 50 characters. The second part can be left out, because
     /// the first is also true alone.
@@ -96,8 +96,8 @@ impl Finding {
         format!(" The {}{of} reached {:.0} %.", self.measure, self.value_pct)
     }
 
-    /// The sentence about a threshold within the interval of the highest risk: more samples could change the level. `None` if the
-    /// interval is unknown or above the threshold.
+    /// Returns a sentence that warns that the threshold is within the interval of the highest risk, so that more
+    /// samples could change the level. `None` if the interval is unknown or above the threshold.
     pub fn uncertainty(&self) -> Option<String> {
         let RiskInterval { low_pct, high_pct } = self.risk_interval?;
         (low_pct < self.threshold_pct).then(|| {

@@ -1,6 +1,7 @@
-//! The nearest few of many points.
+//! Finds the nearest few of many points.
 
-/// A k-d tree over points, balanced and in place: the middle of a slice divides it.
+/// A balanced k-d tree over points, stored as one slice: the middle element of a slice divides the others into two
+/// subtrees.
 pub(super) struct Tree {
     dimensions: usize,
     points: Vec<f64>,

@@ -7,8 +7,8 @@
 
 use super::{field::Field, neighbours::Tree};
 
-/// The number of covered knots that shape the surface at a point: with up to two inputs, and with more. More knots
-/// change the filled values of our maps by less than 1 %.
+/// The number of covered knots that shape the surface at a point: the first number applies with up to two inputs,
+/// the second with more. More knots change the filled values of our maps by less than 1 %.
 const NEIGHBOURS: (usize, usize) = (32, 64);
 
 /// A penalty on slopes. If the neighbours are in one plane, the slope across it is undetermined, and the penalty makes

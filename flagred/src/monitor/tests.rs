@@ -91,7 +91,7 @@ fn profile() -> Profile {
     }
 }
 
-/// Flies phases of (seconds, command of both motors, in the air) at a rate.
+/// Simulates a flight at `rate_hz`; each phase is given as (seconds, command of both motors, in the air).
 fn fly(monitor: &mut Monitor, rate_hz: f64, phases: &[(f64, f64, bool)]) -> Vec<Update> {
     let mut assessments = Vec::new();
     let mut i = 0.0;

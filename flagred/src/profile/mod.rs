@@ -99,7 +99,7 @@ pub(crate) const ALLOW: &str =
 pub struct CauseWords {
     /// The name of the input in the profile.
     pub input: String,
-    /// A stable word for programs: lower-case letters, digits and `_`.
+    /// A stable identifier for use by programs: lower-case letters, digits and `_`.
     pub code: String,
     /// Two or three words, at most 20 ASCII characters, for messages limited to 50 characters.
     pub brief: String,

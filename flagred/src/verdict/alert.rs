@@ -40,7 +40,7 @@ pub(crate) struct Now {
     pub(crate) takes_off: bool,
     /// Whether all motors slow down together, as at touch-down; then FAIL is not raised.
     pub(crate) slow_down_together: bool,
-    /// Whether the motors idle in the air.
+    /// Whether the vehicle counts as falling, because its motors idle in the air.
     pub(crate) falls: bool,
 }
 
@@ -208,7 +208,7 @@ impl Alert {
     }
 
     /// Ends the flight, or the observed part of it. A landing withdraws a WARN that was raised just before it, unless
-    /// FAIL is being reached, which does not count as a landing.
+    /// FAIL is being reached: the end then does not count as a landing.
     pub(crate) fn end(&mut self, t_s: f64, landed: bool) -> Step {
         let change = (self.level > Level::Good).then_some(Level::Good);
         self.level = Level::Good;

@@ -191,8 +191,9 @@ fn unbalanced_motor(motors: &[Motor], limit: f64) -> Option<UnbalancedMotor> {
     })
 }
 
-/// The motor that gives too little thrust: the highest one if it is clearly above all others; otherwise the one that
-/// stopped first, or the highest one if none stopped. Two are returned if they cannot be distinguished.
+/// Returns the motor that gives too little thrust: the motor with the largest value if it is clearly above all
+/// others; otherwise the motor that stopped first, or the one with the largest value if none stopped. Two motors are
+/// returned if they cannot be distinguished.
 fn responsible_motor(
     motors: &[Motor],
     value: impl Fn(&Motor) -> f64 + Copy,
@@ -217,7 +218,7 @@ fn responsible_motor(
     Some(named(motors, highest_one, Side::Upper, other))
 }
 
-/// Whether the highest motor is clearly above the next.
+/// Whether the largest value is clearly above the next one.
 fn is_ahead(most: f64, next: f64) -> bool {
     most - next >= most / 3.0
 }

@@ -240,7 +240,7 @@ fn without_value(model: &Model, output: &str, term: &Term, formula: &Formula) ->
         .outputs
         .iter()
         .position(|it| it.variable.name == output)?;
-    // With a number in place of the formula, the output has a value if the rule fires.
+    // Replaces the formula with a number, so that the output has a value wherever the rule fires.
     let mut other = model.clone();
     let terms = other
         .outputs

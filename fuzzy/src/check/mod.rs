@@ -61,8 +61,8 @@ pub use trend::AgainstTrend;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Options {
-    /// The firing strength that some rule should reach for all inputs. If terms sum to 1 and AND is the minimum, 0.5
-    /// means that the dominant combination of terms has a rule.
+    /// The firing strength that at least one rule should reach at every point of the input space. If the terms of
+    /// each input sum to 1 and AND is the minimum, 0.5 means that the dominant combination of terms has a rule.
     pub coverage: f64,
     /// The author's claims about the outputs.
     pub monotone: Vec<Monotone>,
@@ -86,8 +86,8 @@ impl Default for Options {
 pub struct Report {
     /// Boxes of the input space without a rule.
     pub uncovered: Vec<UncoveredRegion>,
-    /// Whether the list is complete. In large rule sets the search stops early. No list is computed if NOT is applied
-    /// to an interval type-2 term.
+    /// Whether `uncovered` is complete. In large rule sets the search stops early. If NOT is applied to an interval
+    /// type-2 term, there is no search, and `uncovered` is empty.
     pub uncovered_complete: bool,
     /// Rules with equal conditions and different conclusions, and rules that conclude two terms of the same output.
     pub contradictions: Vec<Contradiction>,
@@ -110,7 +110,7 @@ pub struct Report {
     pub holes: Vec<TermGap>,
     /// The values that each output takes.
     pub reach: Vec<Reach>,
-    /// Whether all selected points were evaluated. If evaluation is slow, the search stops early.
+    /// Whether all selected points were evaluated for the reach. If evaluation is slow, the search stops early.
     pub reach_complete: bool,
     /// Rules that contradict the trend of their neighbours.
     pub against_trend: Vec<AgainstTrend>,
@@ -126,10 +126,10 @@ pub struct Report {
 
 /// Analyses the model of an engine.
 ///
-/// In the analyses of conditions and terms (uncovered boxes, rules that never fire, holes, trends), an output that
-/// rules read counts as an input that can take any value of its range. Reach, claims and jumps are computed for the
-/// whole model over its inputs. The degree of an interval type-2 term is its upper degree, and the value of an output
-/// the middle of its interval.
+/// In the analyses of conditions and terms (uncovered boxes, rules that never fire, holes, trends), an output
+/// that rules read counts as an input that can take any value of its range. Reach, claims and jumps are computed
+/// for the whole model over its inputs. The degree of an interval type-2 term is its upper degree, and the value
+/// of an output is the middle of its interval.
 ///
 /// # Errors
 /// A claim of `options` names an input or output that the model does not have.
@@ -160,8 +160,8 @@ pub fn check(engine: &Engine, options: &Options) -> Result<Report, alloc::boxed:
     let (counterexamples, counterexamples_complete) = claims(engine, &options.monotone)?;
     let (first, later) = stages(model);
     let stages: Vec<Stage<'_>> = core::iter::once(first).chain(later).collect();
-    // Regions and rules that never fire are searched for with the upper degrees. This would be wrong if NOT is applied
-    // to a type-2 term, so there is no search then.
+    // The searches for uncovered boxes and for rules that never fire use the upper degrees. This would be wrong if NOT
+    // is applied to a type-2 term, so both searches are skipped in that case.
     let (never_firing, (uncovered, uncovered_complete)) = match model.negates_type2() {
         true => (Vec::new(), (Vec::new(), false)),
         false => (
@@ -306,7 +306,7 @@ fn all_uncovered(stages: &[Stage<'_>], coverage: f64) -> (Vec<UncoveredRegion>, 
             let boxes = coverage::uncovered(model, name, level, &mut shared, known);
             complete &= boxes.complete;
             let new = boxes.found.into_iter().filter(|one| {
-                // A box in which no rule fires is also uncovered; it is not listed twice.
+                // A box in which no rule fires does not reach the coverage either; it is not listed a second time.
                 one.silent
                     || !found
                         .iter()

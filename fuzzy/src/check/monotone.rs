@@ -18,7 +18,7 @@ pub struct Monotone {
     pub input: String,
     /// The claimed direction of the output as the input increases.
     pub direction: Direction,
-    /// The output; `None` for every output.
+    /// The name of the output; `None` if the claim is about every output.
     pub output: Option<String>,
 }
 
@@ -35,7 +35,7 @@ pub enum Direction {
 }
 
 impl Direction {
-    /// Returns the verb for an output that violates the claim.
+    /// Returns the verb that describes a violation of the claim: `falls` or `rises`.
     pub(super) fn contradicted(self) -> &'static str {
         match self {
             Direction::Increasing => "falls",
@@ -69,7 +69,7 @@ impl Monotone {
 pub struct Counterexample {
     /// The claim, with the output that violates it.
     pub claim: Monotone,
-    /// The value of each input; that of the claim's input is the smaller of the two values.
+    /// The value of each input. The claim's input has the smaller of its two values; the larger one is `to`.
     pub at: Vec<Coordinate>,
     /// The larger value of the claim's input.
     pub to: f64,
@@ -119,7 +119,8 @@ impl Probe<'_> {
         let outputs = self.model.outputs.len();
         let mut worst: Vec<Option<(f64, Counterexample)>> = alloc::vec![None; outputs];
         for line in self.lines(input) {
-            // For each output, the best value so far on the line and the input at which it occurs.
+            // For each output: the input and the value at the most extreme value so far on the line, which is the
+            // largest one for an increasing claim and the smallest one for a decreasing claim.
             let mut best: Vec<Option<(f64, f64)>> = alloc::vec![None; outputs];
             for (x, values) in &line.values {
                 for (output, value) in values.iter().enumerate() {

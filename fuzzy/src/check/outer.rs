@@ -1,7 +1,8 @@
-//! Outer terms of an output whose peak the output never reaches, with suggested changes to the rule set.
+//! Search for outer terms (the first and the last term of an output) whose peak the output never reaches, with
+//! suggested changes to the rule set.
 //!
-//! The centroid of a term lies inside the term, so the output never reaches the peak of a term at the end of the range.
-//! For example, a valve with a range from 0 and a term `off` at 0 never closes completely.
+//! The centroid of a term lies inside the term, so the output never reaches the peak of a term at the end of the
+//! range. For example, a valve with a range from 0 and a term `off` at 0 never closes completely.
 
 use alloc::{
     format,
@@ -19,7 +20,7 @@ use crate::{
 /// A peak is reported if all values of the output are at least this far away from it, as a fraction of the range.
 pub(super) const NEAR: f64 = 0.01;
 
-/// An outer term of an output whose peak the output never reaches.
+/// An outer term, that is, the first or the last term of an output, whose peak the output never reaches.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -33,9 +34,9 @@ pub struct UnreachedTerm {
     pub alone: f64,
 }
 
-/// Returns the outer terms that extend to the end of the range, are concluded by a rule, and whose peak is not reached
-/// even if only that rule fires; in the order of their peaks. A term that falls to 0 within the range is not reported,
-/// because its author chose its shape.
+/// Returns the outer terms whose peak the output does not reach even if only rules for that term fire, in the order of
+/// their peaks. Terms that no rule concludes are not reported, nor are terms that fall to 0 before the end of the
+/// range, because the author chose that shape.
 pub(super) fn unreached(
     model: &Model,
     output: &Output,
@@ -139,7 +140,8 @@ pub(super) fn remedies(model: &Model, output: &Output, unreached: &[UnreachedTer
     let wider = widened(model, output, unreached).map(|[low, high]| {
         let range = format!("range: [{}, {}]", shown(low), shown(high));
         match variable.partition_peaks() {
-            // The peaks are written out, because terms in a list of names would move with the range.
+            // The peaks are written out, because terms without explicit peaks are spaced over the range and would move
+            // with it.
             Some(peaks) => {
                 let peaks = listed(variable, &peaks, shown);
                 format!("`{range}` with `partition: {peaks}`")
@@ -195,8 +197,8 @@ fn listed(variable: &Variable, numbers: &[f64], write: impl Fn(f64) -> String) -
     format!("{{{}}}", terms.join(", "))
 }
 
-/// Returns a range of the output with which each of these terms, if it is the only active one, yields its peak; `None`
-/// if no range up to three times as wide does.
+/// Returns a wider range of the output in which each of these terms, if it is the only active one, yields its peak.
+/// `None` if even a range that is three times as wide is not sufficient.
 fn widened(model: &Model, output: &Output, unreached: &[UnreachedTerm]) -> Option<[f64; 2]> {
     let [low, high] = [output.variable.low, output.variable.high];
     let mut range = [low, high];

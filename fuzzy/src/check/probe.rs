@@ -23,10 +23,11 @@ pub struct Coordinate {
     pub value: f64,
 }
 
-/// The maximum work of one analysis, in rules and terms evaluated at points: some tens of milliseconds.
+/// The maximum work of one analysis, as the number of evaluated rules and terms. This work takes some tens of
+/// milliseconds.
 const MAX_STEPS: usize = 3_000_000;
-/// The maximum work of all analyses together, in rules, terms and memberships evaluated: about one second. A single
-/// evaluation of an output with many curved terms takes millions.
+/// The maximum work of all analyses together, as the number of evaluated rules, terms and memberships. This work
+/// takes about one second. A single evaluation of an output with many curved terms takes millions of these steps.
 const MAX_STEPS_IN_ALL: u64 = 200_000_000;
 /// The maximum number of points on a line along one input.
 pub(super) const MAX_ON_A_LINE: usize = 200;
@@ -82,7 +83,8 @@ impl<'m> Probe<'m> {
         done
     }
 
-    /// Returns the values of the outputs at a point; `None` if no rule fires, or if no work remains to evaluate it.
+    /// Returns the values of the outputs at a point; `None` if no rule fires, or if the remaining work does not suffice
+    /// for an evaluation.
     pub(super) fn outputs(&mut self, point: &[f64]) -> impl Iterator<Item = Option<f64>> {
         let failed = !self.is_evaluated(point);
         self.outcomes

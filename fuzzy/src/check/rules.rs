@@ -68,7 +68,7 @@ enum Parts {
     Any(Vec<usize>),
 }
 
-/// Numbers for the parts of conditions, for fast comparison.
+/// Assigns a number to each distinct part of a condition, so that conditions can be compared quickly.
 #[derive(Default)]
 struct Numbers(BTreeMap<String, usize>);
 

@@ -5,14 +5,14 @@ use alloc::{collections::BTreeSet, string::String, vec::Vec};
 use super::axis;
 use crate::model::{MembershipFunction, Model, Term, Variable};
 
-/// A term of a variable, or all of its terms.
+/// A term of a variable, or all terms of the variable.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TermOf {
     /// The name of the input or output.
     pub variable: String,
-    /// The term; `None` if no term of the variable is used.
+    /// The name of the term; `None` if no rule names the variable.
     pub term: Option<String>,
 }
 
@@ -85,7 +85,7 @@ fn hash_of_degrees(term: &Term, values: &[f64]) -> u64 {
     })
 }
 
-/// Returns the terms that no rule uses. A variable none of whose terms is used is listed once.
+/// Returns the terms that no rule uses. A variable that no rule names is listed once, without its terms.
 pub(super) fn unused(model: &Model) -> Vec<TermOf> {
     let mut used: BTreeSet<(&str, &str)> = BTreeSet::new();
     let mut named: BTreeSet<&str> = BTreeSet::new();
@@ -126,7 +126,8 @@ fn term_of(variable: &Variable, term: &Term) -> TermOf {
     }
 }
 
-/// Returns the terms that are 0 on the whole range of their variable, and the output terms for which no rule can fire.
+/// Returns the terms that are 0 on the whole range of their variable, and the output terms that are concluded only by
+/// rules that cannot fire.
 pub(super) fn unreachable(model: &Model, never_firing: &[usize]) -> Vec<TermOf> {
     let mut found = Vec::new();
     for variable in model.variables() {

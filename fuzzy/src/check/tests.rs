@@ -162,7 +162,7 @@ fn findings_of_the_papers_rules() {
         (step.from_term.as_str(), step.to_term.as_str()),
         ("low", "very_low")
     );
-    // IF margin IS medium AND spread IS high.
+    // The rule with index 3 is IF margin IS medium AND spread IS high.
     assert_eq!(step.to_rule, 3);
 
     let reported: Vec<String> = findings.iter().map(ToString::to_string).collect();
@@ -616,7 +616,7 @@ fn each_cause_of_an_unreached_outer_term_has_its_own_message() {
     let outputs = [
         // Only one end is not reached.
         "{range: [0, 40], partition: {off: 0, short: 10, medium: 20, long: 24}}",
-        // A wider range has no effect on a set that ends at the old range.
+        // A wider range has no effect on a set that ends where the old range ends.
         "{range: [0, 40], terms: {off: {triangle: [0, 0, 10]}, short: {triangle: [5, 10, 15]}, medium: {triangle: [15, 20, 25]}, long: {triangle: [25, 30, 35]}}}",
         "{range: [0, 40], terms: {off: {gaussian: {mean: 0, sd: 4}}, short: {gaussian: {mean: 10, sd: 4}}, medium: {gaussian: {mean: 25, sd: 4}}, long: {gaussian: {mean: 40, sd: 4}}}, defuzzifier: bisector}",
         // The terms are inside the range, and its ends are never reached: only a note.

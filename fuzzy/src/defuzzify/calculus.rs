@@ -167,7 +167,7 @@ impl Kinks {
 /// The properties of an aggregation between its kinks and steps.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Smooth {
-    /// An aggregation that gives the same degrees there, except beyond a step, where the degree is 1.
+    /// An aggregation that gives the same degrees between the kinks and steps. Beyond a step, the degree is 1 instead.
     pub(super) aggregation: Aggregation,
     /// Whether the aggregated degree jumps to 1 at some positions.
     pub(super) has_steps: bool,
@@ -182,8 +182,8 @@ impl Smooth {
                 (aggregation, true)
             }
             Aggregation::NilpotentMaximum => (Aggregation::Maximum, true),
-            // If one degree is below the least strength, the set is the larger of both. Terms may cross there without a
-            // cut, so the set may have a kink.
+            // If one of the degrees is below the least strength, the result is the larger degree. Two terms may cross
+            // in this region without a cut at the crossing, so the set may have a kink there.
             Aggregation::Drastic => (Aggregation::Maximum, false),
             Aggregation::ProbabilisticSum | Aggregation::Einstein | Aggregation::Hamacher => {
                 (aggregation, false)

@@ -255,9 +255,9 @@ impl Curves {
         }
     }
 
-    /// Fills `parts` with the activated terms between `from` and `to`, an interval inside that of `runs`, except those
-    /// that are 0 there. If the kinks of all terms are known, each activated term has the same form on the whole
-    /// interval.
+    /// Fills `parts` with the activated terms between `from` and `to`, except those that are 0 there. The interval
+    /// must be inside the one for which `runs` was filled. If the kinks of all terms are known, each activated term
+    /// has the same form on the whole interval.
     fn parts(
         &self,
         strengths: Strengths<'_>,

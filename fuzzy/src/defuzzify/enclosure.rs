@@ -1,7 +1,9 @@
-//! Intervals that contain the value of an output for all firing strengths between two bounds, for every defuzzifier.
+//! Intervals that contain the value of an output for all firing strengths between two bounds, for every
+//! defuzzifier.
 //!
-//! For the centroid and the weighted outputs, these are the intervals of the type reduction. The others follow from the
-//! same two sets: the set of any strengths in between is nowhere below the lower set, and nowhere above the upper one.
+//! For the centroid and the weighted outputs, these are the intervals of the type reduction. For the other
+//! defuzzifiers, the intervals follow from the same two sets: for any firing strengths between the bounds, the
+//! aggregated set is nowhere below the lower set and nowhere above the upper set.
 
 use alloc::vec::Vec;
 
@@ -16,17 +18,19 @@ use crate::table::{
     reduction::{WeightedNumber, average, sum},
 };
 
-/// The number of halvings of the search for a bisector.
+/// The number of halvings in the search for a bisector.
 const HALVINGS: usize = 60;
 
-/// The relative difference up to which degrees count as equally high. It is larger than the one in `maxima`.
+/// The relative difference up to which degrees count as equally high. It is larger than the constant of the same name
+/// in `maxima`.
 const EQUAL: f64 = 1e-9;
 
 /// The method that computes an enclosure of the values of an output.
 #[derive(Debug, Clone)]
 pub(crate) struct EnclosureMethod {
     method: Method,
-    /// Whether an end may be anywhere in the support, because the type reduction only approximates the interval.
+    /// Whether the lower bounds are ignored, so that an end may be anywhere in the support. This is necessary if the
+    /// type reduction only approximates the interval.
     is_wide: bool,
     low: f64,
     high: f64,
@@ -223,8 +227,8 @@ impl Set {
         whole.area
     }
 
-    /// Returns the first or the last bisector of all sets between the lower and the upper one. The first one bisects the
-    /// set that equals the upper set to the left of it and the lower set to the right of it.
+    /// Returns the first or the last bisector of all sets between the lower and the upper one. At the first bisector x,
+    /// the area of the upper set left of x equals the area of the lower set right of x.
     fn bisector(
         &self,
         is_first: bool,

@@ -34,8 +34,8 @@ impl Partition {
         let mut middles = vec![f64::INFINITY; terms];
         for Interval { from, to, alive } in &intervals {
             for line in alive {
-                // The position of the term: the middle of its highest interval, or the end of the
-                // range next to its top.
+                // The position on the interval at which the term is highest, or the middle of a
+                // plateau. The position of the term is an average of these.
                 let x = 0.5 * (from + to) + 0.5 * (to - from) * (line.right - line.left);
                 let middle = middles.get_mut(line.term)?;
                 *middle = if middle.is_finite() {

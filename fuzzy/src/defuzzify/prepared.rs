@@ -245,7 +245,8 @@ fn degree(flank: &Flank, x: f64) -> f64 {
     }
 }
 
-/// Returns the formula of a flank. For two-sided shapes it is that of one side.
+/// Returns the formula of a flank. For a two-sided Gaussian whose sides are separate, this is the formula of the side
+/// to which the flank belongs.
 fn kind(shape: &MembershipFunction, rises: bool) -> (ShapeKind, [f64; 4]) {
     match (shape.kind(), rises) {
         ((ShapeKind::GAUSSIAN2, [mean, sd, right, _]), true) if mean <= right => {

@@ -1,20 +1,21 @@
 //! Type reduction: the interval of the centroids of all sets between a lower and an upper aggregated set.
 //!
-//! The left end of the interval of a set between `lower(x)` and `upper(x)` is the smallest centroid. It is reached by the
-//! set that is as high as possible left of its own centroid and as low as possible right of it. So the left end is the
-//! root c of
+//! The left end of the interval of a set between `lower(x)` and `upper(x)` is the smallest centroid. It is
+//! reached by the set that is as high as possible left of its own centroid and as low as possible right of it.
+//! So the left end is the root c of
 //!
 //! ```text
 //! F(c) = integral of (c - x) upper(x) over x < c  +  integral of (c - x) lower(x) over x > c
 //! ```
 //!
-//! F is convex and never decreases, since its derivative is the area of the upper set left of c plus the area of the lower
-//! set right of c. Between the kinks of straight sets it is a cubic. Newton's method with the exact integrals of the
-//! pieces therefore approaches the root from one side, without samples, and ends at the last digit. The right end is its
-//! mirror image. `table/reduction.rs` has the search, and the same for weighted numbers.
+//! F is convex and never decreases, since its derivative is the area of the upper set left of c plus the area of
+//! the lower set right of c. Between the kinks of straight sets it is a cubic. Newton's method with the exact
+//! integrals of the pieces therefore approaches the root from one side, without samples, and ends at the last
+//! digit. The right end is its mirror image. The search is in `table/reduction.rs`, together with the same
+//! search for weighted numbers.
 //!
-//! If the lower set is empty, the centroid of a narrow set anywhere inside the upper one is possible: the interval is the
-//! support of the upper set.
+//! If the lower set is empty, the centroid of a narrow set anywhere inside the upper one is possible: the
+//! interval is the support of the upper set.
 
 use alloc::{boxed::Box, vec::Vec};
 

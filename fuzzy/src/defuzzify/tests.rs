@@ -5,7 +5,8 @@ use crate::model::{
     Aggregation, Defuzzifier, Implication, MembershipFunction, Model, Operators, Output, Variable,
 };
 
-/// Returns a model of an output with these terms, and a rule per term whose firing strength is its weight.
+/// Returns a model with one output that has these terms. Each term has a rule that always fires, and the firing
+/// strength of the rule is the weight given with the term.
 pub(super) fn model(
     (low, high): (f64, f64),
     terms: &[(MembershipFunction, f64)],
@@ -189,7 +190,8 @@ fn a_maximum_beside_the_middle_of_a_bell() {
 
 #[test]
 fn a_nilpotent_minimum_cuts_out_a_plateau() {
-    // Of a Gaussian at a strength of 0.3, only the part above 0.7 remains, with the height 0.3.
+    // With a strength of 0.3, the nilpotent minimum leaves only the part of a Gaussian where its degree is above
+    // 0.7, and this part has the height 0.3.
     let half = 10.0 * (-2.0 * 0.7_f64.ln()).sqrt();
     for (aggregation, terms) in [
         (Aggregation::Maximum, vec![(gaussian(40.0, 10.0), 0.3)]),

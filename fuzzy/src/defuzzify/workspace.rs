@@ -32,7 +32,7 @@ impl Steps {
         most: u64::MAX,
     };
 
-    /// Adds steps, and returns whether the limit has not been exceeded.
+    /// Adds steps, and returns whether their number is still within the limit.
     pub(super) fn take(&mut self, steps: usize) -> bool {
         self.taken = self.taken.saturating_add(steps as u64);
         !self.are_spent()
@@ -47,7 +47,7 @@ impl Steps {
 /// are more, the pieces are computed again in each step of the search.
 const MAX_LINES: usize = 256;
 
-/// The approximate number of evaluations of each term that the integration of a curved piece takes.
+/// The approximate number of times that each term is evaluated to integrate a curved piece.
 pub(super) const STEPS_OF_A_CURVE: usize = 16;
 
 impl Workspace {

@@ -109,8 +109,8 @@ pub fn distinct(i: usize) -> Colour {
     OKABE_ITO[i % OKABE_ITO.len()].mix(Colour::WHITE, lighter)
 }
 
-/// Works like [`distinct`], but the colours are dark enough for a thin line on white: there is no yellow, and darker
-/// colours follow.
+/// Works like [`distinct`], but the colours are dark enough for a thin line on white: yellow is omitted, and after
+/// six colours, darker ones follow.
 pub fn distinct_line(i: usize) -> Colour {
     const ORDER: [usize; 6] = [5, 4, 2, 6, 1, 0];
     let darker = (i / ORDER.len() % 3) as f64 * 0.35;

@@ -1,10 +1,10 @@
 //! Contour lines by marching squares.
 
-/// A segment of a contour line. Coordinates are in cells from the first cell.
+/// A segment of a contour line. Coordinates are in units of cells, relative to the first cell.
 pub(super) type Piece = [(f64, f64); 2];
 
-/// Returns the segments of the line at `level` through values at the corners of a grid; cells with an unknown corner
-/// have none.
+/// Returns the segments of the line at `level` through values at the corners of a grid. Cells with an unknown corner
+/// have no segments.
 pub(super) fn pieces(
     columns: usize,
     rows: usize,

@@ -78,7 +78,8 @@ impl Frame {
         height: 380.0,
     };
 
-    /// Returns the point at fractions from 0 to 1 of the width and of the height, which counts upwards.
+    /// Returns the point at a fraction `x` of the width, from the left edge, and a fraction `y` of the height, from the
+    /// lower edge.
     pub fn at(&self, x: f64, y: f64) -> (f64, f64) {
         (
             self.left + x * self.width,
@@ -117,7 +118,7 @@ impl SvgDocument {
         SvgDocument::styled(width, height, STYLE)
     }
 
-    /// Creates an empty document with custom styles. The style `rect.paper` is that of the background.
+    /// Creates an empty document with custom styles. The style `rect.paper` applies to the background.
     pub fn styled(width: f64, height: f64, style: impl Into<String>) -> SvgDocument {
         SvgDocument {
             width,

@@ -182,13 +182,14 @@ fn heading(slice: &Slice, more: &str) -> String {
     visible(&heading).into_owned() + "\n"
 }
 
-/// Writes a line that may contain names. Writing to a String cannot fail.
+/// Writes a line. Hidden characters are escaped, because the line may contain names from the input. Writing to a String
+/// cannot fail.
 fn line(text: &mut String, arguments: std::fmt::Arguments<'_>) {
     let line = arguments.to_string();
     let _ = writeln!(text, "{}", visible(&line));
 }
 
-/// Returns the character for the i-th rule; the same one for all rules after 36.
+/// Returns the character for the i-th rule; all rules after the first 36 have the character `+`.
 fn mark(i: usize) -> char {
     let digit = u32::try_from(i).ok().and_then(|i| char::from_digit(i, 36));
     digit.map_or('+', |c| c.to_ascii_uppercase())

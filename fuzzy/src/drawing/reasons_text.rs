@@ -11,8 +11,8 @@ use crate::{
     model::Model,
 };
 
-/// The distance, as a fraction of the range, below which a change counts as adjacent; this is the resolution of the
-/// search.
+/// The distance of a change, as a fraction of the range, below which the text is `just above` or `just below`. It
+/// is the resolution of the search.
 const NEXT: f64 = 1e-9;
 
 /// The maximum number of rules that are listed.

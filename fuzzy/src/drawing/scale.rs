@@ -25,7 +25,8 @@ impl Scale {
         self.low + share * (self.high - self.low)
     }
 
-    /// Returns round numbers within the range, including its ends, that divide it into about `pieces` parts.
+    /// Returns the multiples of a round step within the range. The step divides the range into about `pieces` parts. An
+    /// end of the range is included if it is such a multiple.
     pub fn ticks(self, pieces: f64) -> Vec<f64> {
         let rough = (self.high - self.low) / pieces;
         if rough <= 0.0 || !rough.is_finite() {

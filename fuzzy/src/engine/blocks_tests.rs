@@ -18,8 +18,8 @@ fn engine(text: &str) -> Engine {
     Engine::new(&model(text)).unwrap()
 }
 
-/// Four rules whose firing strengths equal their weights and whose values are 1, 2, 3 and 4, so that the weighted sum
-/// shows which of them fire.
+/// Returns the weighted sum of four rules whose firing strengths equal their weights and whose values are 1, 2, 3 and
+/// 4. The sum shows which of the rules fire.
 fn weighted_sum(activation: &str) -> f64 {
     let text = format!(
         "inputs: {{x: {{range: [0, 1], partition: [a, b]}}}}
@@ -85,7 +85,7 @@ fn blocks_have_their_own_operators() {
         (outcomes[0].coverage, outcomes[0].dominant_rule),
         (0.375, Some(0))
     );
-    // 0.5 against 0.5: of rules with equal strength the first one is dominant.
+    // Both rules have the strength 0.5. Of rules with equal strength, the first one is dominant.
     assert_eq!(outcomes[1].state, State::Defined(1.0));
     assert_eq!(outcomes[1].dominant_rule, Some(2));
     let explained = engine.explain(&[0.25, 0.5]).unwrap();

@@ -1,14 +1,14 @@
-//! Stages with interval type-2 terms: one compiled stage has both bounds of the firing strengths, and a type reduction
-//! computes the interval of each output.
+//! Stages with interval type-2 terms: one compiled stage has both bounds of the firing strengths, and a type
+//! reduction computes the interval of each output.
 //!
-//! AND, OR, the hedges and weights never decrease when a degree increases, and NOT reverses the order. So the upper bound
-//! of a firing strength is an ordinary firing strength of upper degrees, in which terms below an odd number of NOTs have
-//! their lower degrees; the lower bound is the opposite. A model with type-2 terms is therefore converted to an ordinary
-//! model, in which each output that is an interval has a second output, with the lower bounds. The second outputs are
-//! behind all others and have no outcomes.
+//! AND, OR, the hedges and weights never decrease when a degree increases, and NOT reverses the order. So the
+//! upper bound of a firing strength is an ordinary firing strength of upper degrees, in which terms below an odd
+//! number of NOTs have their lower degrees; for the lower bound, upper and lower degrees are exchanged. A model
+//! with type-2 terms is therefore converted to an ordinary model, in which each output that is an interval has a
+//! second output, with the lower bounds. The second outputs follow all other outputs and have no outcomes.
 //!
-//! The table computes the intervals of weighted outputs and the values of fuzzy sets with a closed form, so that they can be
-//! exported. All other intervals of fuzzy sets are computed here.
+//! The table computes the intervals of weighted outputs and the values of fuzzy sets with a closed form, so that
+//! they can be exported. All other intervals of fuzzy sets are computed here.
 
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 
@@ -82,7 +82,7 @@ impl Stage {
         }
     }
 
-    /// Returns the parts that compute intervals; `None` if no output of the stage is an interval.
+    /// Returns the type reductions of the stage; `None` if no output of the stage is an interval.
     pub(super) fn bounds(&self) -> Option<&Bounds> {
         match &self.single {
             super::SingleRowMethod::Bounds(bounds) => Some(bounds),
@@ -130,7 +130,7 @@ fn with_both_bounds(model: &Model) -> Model {
             changed.terms.push(lower);
         }
     }
-    // The name of each output that is an interval, and that of its second output.
+    // For each output that is an interval: its name, and the name of its second output.
     let mut lower_outputs: Vec<(&str, String)> = Vec::new();
     for (index, output) in model.outputs.iter().enumerate() {
         if !model.has_interval(output) {
@@ -147,7 +147,7 @@ fn with_both_bounds(model: &Model) -> Model {
             lower = only(output, Bound::Lower);
         } else if output.defuzzifier.is_weighted() {
             lower = output.clone();
-            // The numbers are those of the first output.
+            // The second output needs no numbers of its own, because the numbers of the first output are used.
             replace_terms(&mut lower, &MembershipFunction::Constant { value: 0.0 });
         } else {
             let at = upper.variable.low;

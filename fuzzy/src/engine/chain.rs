@@ -99,7 +99,7 @@ impl Chain {
         &self.later
     }
 
-    /// Returns the stages in the order of evaluation, each with its relation to the model.
+    /// Returns the stages in the order of evaluation, each with the indices of its outputs and rules in the model.
     fn stages<'a>(
         &'a self,
         first: &'a Stage,

@@ -245,7 +245,7 @@ fn literal(variable: &Variable, proposition: &Proposition) -> Option<Literal> {
 }
 
 impl Chain {
-    /// Appends the terms that propositions about outputs name to the curves, behind those of all stages.
+    /// Appends the terms of propositions about outputs to the curves, after the curves of all stages.
     pub(super) fn conclusions(&mut self, propositions: &[AntecedentProposition]) {
         for literal in propositions
             .iter()

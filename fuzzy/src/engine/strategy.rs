@@ -94,7 +94,7 @@ impl SingleRowMethod {
         }
     }
 
-    /// Evaluates the row if the rules are a plane, which needs no working memory; returns whether they are.
+    /// Evaluates the row, without working memory, if the rules are compiled to a plane. Returns whether they are.
     #[inline(always)]
     #[cfg_attr(not(feature = "simd"), expect(unused_variables))]
     pub(super) fn by_plane(&self, inputs: &[f64], outcomes: &mut [Outcome]) -> bool {

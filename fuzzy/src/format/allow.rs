@@ -44,7 +44,8 @@ pub(super) fn read(
 
 impl AllowedFinding {
     /// Reads the value of the key `allow` of a rule set or a profile, whose findings have these `codes`. `example` is
-    /// an entry for messages. Appends the span of each entry to `spans`, and errors to `findings`.
+    /// an example of an entry, which messages quote. Appends the span of each entry to `spans`, and errors to
+    /// `findings`.
     pub fn read(
         node: &Node,
         codes: &[&'static str],

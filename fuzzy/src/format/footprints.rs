@@ -148,7 +148,7 @@ pub(super) fn blur_partition(
         let blurred = blurred(&what, term, share, variable, node, here, findings);
         here.numbers = numbers;
         let (Some(blurred), Some(term)) = (blurred, variable.terms.get_mut(i)) else {
-            // One error is enough: it gives the largest number for this term.
+            // One error is enough: it states the limit that applies to this term.
             here.unread = true;
             return;
         };
@@ -304,7 +304,7 @@ fn lags(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<(f64,
     }
 }
 
-/// A range of numbers in words, and the test whether a number is in it.
+/// A description of a range of numbers, and a function that tests whether a number is in the range.
 type NumberRange = (&'static str, fn(f64) -> bool);
 
 const BELOW_1: NumberRange = ("at least 0 and below 1", |x| (0.0..1.0).contains(&x));

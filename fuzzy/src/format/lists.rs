@@ -180,7 +180,7 @@ fn dashes(what: &str, items: &[Node]) -> Option<(Vec<(Node, Node)>, Diagnostic)>
     Some((entries, finding.help(help)))
 }
 
-/// Returns another value with the same position.
+/// Returns a node with the given value at the position of another node.
 fn with(node: &Node, value: Value) -> Node {
     Node {
         value,

@@ -104,8 +104,8 @@ pub struct PartialModel {
     pub model: Model,
     /// The positions of the parts of the model.
     pub spans: Spans,
-    /// Whether a rule or a term with explicit membership function could not be read, so that the names in it are
-    /// unknown.
+    /// Whether a rule or a term with an explicit membership function could not be read, so that the names in it
+    /// are unknown.
     pub names_unread: bool,
 }
 

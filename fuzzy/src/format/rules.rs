@@ -94,7 +94,7 @@ const HELP: &str = "write `IF input IS term THEN output IS term`, or remove the 
 
 const BEATEN: &str = "{term: high, degree: 0.4, support: 3}";
 
-/// Returns whether an entry begins with a word that cannot begin a rule, so that it belongs to the one before it.
+/// Returns whether an entry begins with a word that cannot begin a rule, so that it continues the previous entry.
 fn continues(item: &Node) -> bool {
     let first = item
         .as_text()

@@ -28,7 +28,8 @@ pub(super) fn terms(
     let Some(entries) = node.entries(what, "term", help, findings) else {
         return;
     };
-    // A rule may name a term that was meant in place of a repeated one.
+    // An entry with a repeated name is rejected. Its author probably meant another name, which rules may use, so
+    // unknown terms are not reported.
     spans.terms_unread = entries.len() < node.children();
     for entry in &entries {
         let mut here = TermSpans {

@@ -350,7 +350,7 @@ fn words_of_other_programs_are_answered_with_ours() {
             "upper",
             "lower",
         ]),
-        // Profiles are read with the same table.
+        // Profiles use the same table of words.
         Vec::from(["flagred", "mean", "std", "if_missing"]),
     ]
     .concat();

@@ -86,7 +86,8 @@ fn entries<'n>(
         &variables_help(key),
         findings,
     )?;
-    // A rule may name the variable that was meant in place of a repeated one.
+    // An entry with a repeated name is rejected. Its author probably meant another name, which rules may use, so
+    // unknown variables are not reported.
     spans.names_unread |= entries.len() < node.children();
     let is_variable = |entry: &&Entry<'_>| matches!(entry.value.value, Value::Mapping(_));
     let has_range = |entry: &Entry<'_>| entry.value.child("range").is_some();
@@ -359,7 +360,7 @@ fn variable(
             if let Some(empty) = empty
                 && !stray.is_empty()
             {
-                // The terms are in the same column as their key: a single finding suggests to indent them.
+                // The terms are in the same column as their key: a single finding suggests indenting them.
                 fields.withdraw(findings);
                 if let Some(finding) = findings.last_mut() {
                     finding.help =

@@ -103,7 +103,8 @@ fn function(membership_function: &MembershipFunction, height: f64) -> Node {
     Node::mapping(entries)
 }
 
-/// Returns the terms; as a partition or as steps if they form one.
+/// Returns the key and the value for the terms of a variable: a partition or steps if the terms have such a form,
+/// otherwise a mapping of the terms.
 fn terms(variable: &Variable) -> (&'static str, Node) {
     let terms = &variable.terms;
     let names = || terms.iter().map(|term| term.name.as_str());

@@ -141,13 +141,14 @@ impl Formula {
         matches!(&self.variables[..], [only] if only.name == variable)
     }
 
-    /// Returns the position of the first occurrence of each variable in the text it was parsed from.
+    /// Returns the position of the first occurrence of each variable in the text that the formula was parsed from.
     pub(crate) fn spans(&self) -> impl Iterator<Item = &Range<usize>> {
         let firsts = self.variables.iter().map(|variable| variable.spans.first());
         firsts.flatten()
     }
 
-    /// Returns each occurrence of a variable in the text it was parsed from, as its name and position.
+    /// Returns each occurrence of a variable, as its name and its position in the text that the formula was parsed
+    /// from.
     pub(crate) fn places(&self) -> impl Iterator<Item = (&str, &Range<usize>)> {
         self.variables.iter().flat_map(|variable| {
             let spans = variable.spans.iter();

@@ -108,7 +108,8 @@ enum FormulaMistakeKind<'a> {
 }
 
 impl<'a> ParseError<&'a str> for FormulaMistake<'a> {
-    // nom's own parsers are always optional here, so their errors are always replaced.
+    // nom's own parsers are used here only where they may fail, and their errors are always replaced by a more specific
+    // one.
     fn from_error_kind(rest: &'a str, _: ErrorKind) -> Self {
         FormulaMistake {
             rest,
@@ -167,7 +168,7 @@ fn operator(rest: &str, operation: Operation) -> Option<&str> {
             .then(|| rest.get(found.len()..).unwrap_or(""));
     }
     let after = rest.strip_prefix(symbol)?;
-    // `<` must not match the start of `<=`, nor `*` that of `**`.
+    // `<` must not match the start of `<=`, and `*` must not match the start of `**`.
     let longer = after.starts_with('=') && matches!(symbol, "<" | ">")
         || symbol == "*" && after.starts_with('*');
     (!longer).then_some(after)
@@ -376,7 +377,7 @@ fn quoted(rest: &str, quote: char) -> ParseResult<'_, String> {
 /// Hedges of rules, which a formula does not have.
 const HEDGES: [&str; 4] = ["very", "somewhat", "extremely", "seldom"];
 
-/// The suggestion for a choice between two values.
+/// The suggestion for conditional expressions such as `c ? a : b`, which formulas do not support.
 const IF: &str =
     "a comparison is 1 or 0: for a if c is true, else b, write `(c) * a + (1 - (c)) * b`";
 

@@ -25,8 +25,8 @@ impl Consequents {
         }
     }
 
-    /// Returns the index of the term with the highest degree at a value, the first of equal ones, and that degree.
-    /// `None` if all degrees are 0.
+    /// Returns the index of the term with the highest degree at a value, and this degree. If several terms have
+    /// that degree, the first one is returned. `None` if all degrees are 0.
     pub(super) fn highest(&self, output: &Variable, value: f64) -> Option<(u16, f64)> {
         if !self.are_numbers {
             return highest(output, value);
@@ -65,8 +65,8 @@ fn number(shape: &MembershipFunction) -> Option<f64> {
     shape.number().or_else(|| shape.at())
 }
 
-/// Returns the index of the term with the highest membership, the first of equal ones, and that membership. `None` if
-/// all memberships are 0.
+/// Returns the index of the term with the highest membership, and this membership. If several terms have that
+/// membership, the first one is returned. `None` if all memberships are 0.
 pub(super) fn highest(variable: &Variable, value: f64) -> Option<(u16, f64)> {
     let mut best: Option<(u16, f64)> = None;
     for (i, term) in (0..=u16::MAX).zip(&variable.terms) {

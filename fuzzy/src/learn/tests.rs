@@ -93,9 +93,9 @@ fn the_papers_rules_are_recovered_from_their_own_map() {
     let engine = Engine::new(&model).unwrap();
     let mut blank = model.clone();
     blank.rules.clear();
-    // Samples at the peaks and halfway between them. With finer samples the learner would see the centroid's
-    // transitions between two rules, which vote too: 75 % at margin 0.08 belongs fully to `high`, although no rule
-    // concludes `high`.
+    // Samples are at the peaks and halfway between them. Finer samples would include transitions of the centroid
+    // between two rules, and would vote for the wrong terms: 75 % at margin 0.08 belongs fully to `high`, although
+    // no rule concludes `high`.
     for step in [5, 10] {
         let mut learner = Learner::new(&blank, Settings::default()).unwrap();
         for i in (0..=50).step_by(step) {

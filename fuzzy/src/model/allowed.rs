@@ -8,7 +8,8 @@ use alloc::string::String;
 pub struct AllowedFinding {
     /// The code of the finding, such as `jump`.
     pub finding: String,
-    /// A name in backticks in the message of the finding, such as that of a variable; `None` accepts all findings with the code.
+    /// A name in backticks in the message of the finding, such as the name of a variable; `None` accepts all findings
+    /// with the code.
     pub of: Option<String>,
     /// The author's reason.
     pub because: String,

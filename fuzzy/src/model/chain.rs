@@ -107,7 +107,7 @@ impl Model {
         }
     }
 
-    /// Returns all variables: the inputs, then those of the outputs.
+    /// Returns all variables: first the inputs, then the variables of the outputs.
     pub fn variables(&self) -> impl Iterator<Item = &Variable> + Clone {
         let outputs = self.outputs.iter().map(|output| &output.variable);
         self.inputs.iter().chain(outputs)
@@ -230,8 +230,9 @@ pub(crate) fn reads_of_all(model: &Model, spans: &Spans) -> Vec<Vec<OutputRefere
     reads
 }
 
-/// Returns, for each block with an activation method, the outputs that its rules conclude. Which of its rules fire
-/// depends on all of them, so each of these outputs reads every variable that any of the rules reads.
+/// Returns, for each block with an activation method, the outputs that its rules conclude. The method selects the
+/// rules that fire by comparing all rules of the block, so each of these outputs reads every variable that any of
+/// the rules reads.
 fn concluded_together(model: &Model) -> BTreeMap<usize, Vec<usize>> {
     let mut together: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for rule in model.rules.iter().filter(|rule| is_selected(model, rule)) {
@@ -452,7 +453,7 @@ outputs:
         };
         let plain = inputs_of(format!("{variables}rules: {rules}\n"));
         assert_eq!(plain, ["a", "ab", "c"]);
-        // Which of the rules fire depends on all of them.
+        // The activation method compares both rules, so `x` and `z` depend on the inputs of both.
         let rules = "[IF a IS low THEN x IS low, IF c IS low THEN z IS low]";
         let selected = inputs_of(format!(
             "{variables}activation: {{first: 1}}\nrules: {rules}\n"

@@ -71,7 +71,8 @@ pub struct Spans {
     pub provenance: Range<usize>,
     /// Whether a rule could not be parsed and is missing from the model; a finding reports the error.
     pub(crate) rules_unread: bool,
-    /// Whether an input or output could not be read under its name; a finding reports the error.
+    /// Whether an input or output may be missing because its name is repeated or its position is wrong; a finding
+    /// reports the error.
     pub(crate) names_unread: bool,
 }
 
@@ -143,8 +144,8 @@ pub struct RuleSpans {
     pub confidence: Range<usize>,
     /// The number after WITH, or the empty range after the conclusion if there is none.
     pub weight: Range<usize>,
-    /// The degrees of the consequents that were rejected in favour of this one.
+    /// The degrees of the consequents that were rejected in favour of the rule's consequent.
     pub against: Vec<Range<usize>>,
-    /// The terms of the consequents that were rejected in favour of this one.
+    /// The terms of the consequents that were rejected in favour of the rule's consequent.
     pub against_terms: Vec<Range<usize>>,
 }

@@ -17,11 +17,11 @@ pub(crate) enum NoFootprint {
     TooLarge(f64),
 }
 
-/// Moves a valid membership function to the left and to the right by up to `by`: the upper membership function is the
-/// maximum of all these copies, the lower one their minimum.
+/// Moves a valid membership function to the left and to the right by up to `by`: the upper membership function
+/// is the maximum of all shifted copies, and the lower one is their minimum.
 ///
-/// A vertical edge at or beyond an end of the `range` does not move, because the range has no values beyond the edge.
-/// `variable` is the name of the variable, for a formula.
+/// A vertical edge at or beyond an end of the `range` does not move, because the range has no values beyond the
+/// edge. `variable` is the name of the variable, which a formula for a bound contains.
 pub(crate) fn blurred(
     function: &MembershipFunction,
     by: f64,
@@ -168,7 +168,7 @@ fn straight(corners: [f64; 4], by: f64, (low, high): (f64, f64)) -> Result<Footp
 }
 
 /// Returns the bounds of all Gaussians whose mean and standard deviation lie in these intervals. `variable` is the name
-/// of the variable, for the formula of the lower bound.
+/// of the variable, which the formula of the lower bound contains.
 pub(crate) fn uncertain_gaussian(
     mean: (f64, f64),
     sd: (f64, f64),
@@ -201,7 +201,7 @@ pub(crate) fn uncertain_gaussian(
     Ok((upper, normal(F::Function { formula })))
 }
 
-/// Formats a number as an operand.
+/// Formats a number as an operand of a formula; a negative number is put in brackets.
 fn bracketed(number: f64) -> String {
     if number < 0.0 {
         format!("({number})")

@@ -125,7 +125,7 @@ pub struct Output {
     pub samples: Option<Sampling>,
     /// The value of the output where no rule fires.
     pub when_no_rule_fires: NoRuleFires,
-    /// The aggregation, which combines the consequents of this output; `None` uses that of the rule set.
+    /// The aggregation, which combines the consequents of this output; `None` uses the aggregation of the rule set.
     pub aggregation: Option<Aggregation>,
     /// Whether a value outside the range is clamped to it. Only Takagi-Sugeno outputs can leave their range.
     pub clamp: bool,
@@ -149,10 +149,11 @@ pub enum NoRuleFires {
 
 /// A defuzzifier: the method that reduces an aggregated fuzzy set to a number.
 ///
-/// The three maxima methods treat degrees as equal if their relative difference is at most 1e-12. Two plateaus or peaks
-/// of nearly equal degree therefore both count; the section between two kinks is a plateau if its degrees are that close
-/// to the maximum; and a firing strength that close to the maximum degree of a term does not cut the term off. The mean
-/// is taken over all values on plateaus, or over the peaks if there is no plateau.
+/// The three maxima methods treat degrees as equal if their relative difference is at most 1e-12. Two plateaus
+/// or peaks of nearly equal degree therefore both count; the section between two kinks is a plateau if all its
+/// degrees are equal to the maximum in this sense; and a firing strength that is equal in this sense to the
+/// maximum degree of a term does not cut the term off. The mean is taken over all values on plateaus, or over
+/// the peaks if there is no plateau.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Defuzzifier {
     /// The centre of gravity of the aggregated set.
@@ -259,7 +260,7 @@ pub struct Rule {
     pub confidence: Option<f64>,
     /// The number of samples that support the rule.
     pub support: Option<u64>,
-    /// The consequents that were rejected in favour of this one when the rule was learned.
+    /// The consequents that were rejected in favour of the rule's consequent when the rule was learned.
     pub against: Vec<RejectedConsequent>,
     /// A note of the author.
     pub note: Option<String>,

@@ -58,8 +58,8 @@ impl Bound {
 }
 
 impl Term {
-    /// Returns the lower degree of membership of `x`; that of [`Term::membership`] if the term has no lower membership
-    /// function.
+    /// Returns the lower degree of membership of `x`. If the term has no lower membership function, this is the result
+    /// of [`Term::membership`].
     #[must_use]
     pub fn lower_membership(&self, x: f64) -> f64 {
         match &self.lower {

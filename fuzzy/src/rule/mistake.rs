@@ -54,7 +54,8 @@ pub(super) enum RuleMistakeKind<'a> {
 }
 
 impl<'a> ParseError<&'a str> for RuleMistake<'a> {
-    // nom's own parsers are always optional here, so their errors are always replaced.
+    // nom's own parsers are used here only where they may fail, and their errors are always replaced by a more specific
+    // one.
     fn from_error_kind(rest: &'a str, _: ErrorKind) -> Self {
         RuleMistake {
             rest,

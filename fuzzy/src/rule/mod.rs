@@ -83,7 +83,7 @@ pub enum Condition {
 /// `variable IS hedge* term`. `variable IS NOT term` is the hedge [`Hedge::Not`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Proposition {
-    /// The input.
+    /// The input, or the output that is read.
     pub variable: Name,
     /// The hedges in the order of the text; the one nearest to the term is applied first.
     pub hedges: Vec<Hedge>,

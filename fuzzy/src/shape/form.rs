@@ -8,7 +8,7 @@ use super::MembershipFunction;
 pub(crate) struct ShapeForm {
     /// The key of the shape.
     pub(crate) name: &'static str,
-    /// The parameters, in the order of a list.
+    /// The name and role of each parameter, in the order in which a list contains their values.
     pub(crate) parameters: &'static [(&'static str, Role)],
     /// A description for the schema.
     #[cfg_attr(
@@ -68,7 +68,7 @@ pub(super) fn padded(parameters: &[f64]) -> [f64; 4] {
     padded
 }
 
-/// Defines the table of forms, and the functions that use it, so that a shape without a row does not compile.
+/// Defines the table of forms and the functions that use it. A shape without a row in the table is a compile error.
 macro_rules! forms {
     ($($shape:ident $name:literal $formula:ident [$($parameter:ident: $role:ident),+] $about:literal;)+) => {
         impl MembershipFunction {

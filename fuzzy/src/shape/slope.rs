@@ -167,7 +167,8 @@ fn gaussian_slope(x: f64, mean: f64, sd: f64) -> f64 {
     -(x - mean) / sd / sd * gaussian(x, mean, sd)
 }
 
-/// Returns `k s (1 - s)`, where `1 - s` is the sigmoid with the opposite slope.
+/// Returns the slope of a sigmoid with the slope parameter `k` and the degree `s`: `k s (1 - s)`. `1 - s` is computed
+/// as the sigmoid with the opposite slope parameter.
 fn sigmoid_slope(x: f64, inflection: f64, slope: f64) -> f64 {
     slope * sigmoid(x, inflection, slope) * sigmoid(x, inflection, -slope)
 }

@@ -43,7 +43,7 @@ fn smooth_step(t: f64) -> f64 {
     select_unpredictable(t <= 0.5, below, above)
 }
 
-/// The degrees at which a curve is split, so that no interval hides a narrow term.
+/// The degrees at which a curve is split, so that an integral does not miss a narrow term.
 #[cfg(feature = "alloc")]
 const LEVELS: [f64; 11] = [
     1e-14, 1e-9, 1e-6, 1e-3, 0.03, 0.2, 0.5, 0.8, 0.97, 0.999, 0.999_999,

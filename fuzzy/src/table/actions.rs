@@ -54,7 +54,7 @@ impl<const L: usize> StrongestRule<L> {
     }
 }
 
-/// Returns the firing strength, or 0 if it is below the least one.
+/// Returns the firing strength, or 0 if it is below the minimum `least`.
 #[inline(always)]
 pub(super) fn fires(strength: f64, least: f64) -> f64 {
     if strength < least { 0.0 } else { strength }
@@ -84,7 +84,8 @@ pub(super) trait FiringConsumer<const L: usize> {
 #[repr(C, align(64))]
 pub(super) struct FiringStrengths<'m, const L: usize> {
     /// The strongest program if there is one output. It is kept in registers, because otherwise each rule would wait
-    /// for memory. It is separate from `strongest`, because a vector that spans two cache lines takes twice as long.
+    /// for memory. It is separate from `strongest`, because a vector that spans two cache lines takes twice as long
+    /// to access.
     one: StrongestRule<L>,
     least: f64,
     strengths: &'m mut [[f64; L]],

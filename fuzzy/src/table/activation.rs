@@ -2,8 +2,8 @@
 
 use super::PartialConjunction;
 
-/// The default of the least firing strength; smaller strengths count as 0. It absorbs the rounding error of strengths
-/// that are exactly 0, such as that of `x IS a AND x IS not a` with `bounded_difference`.
+/// The default minimum firing strength; smaller strengths count as 0. It absorbs rounding errors in strengths whose
+/// exact value is 0, such as the strength of `x IS a AND x IS not a` with `bounded_difference`.
 pub const MIN_STRENGTH: f64 = 1e-12;
 
 /// An activation method: selects the rules of a block that fire and adjusts their strengths, given the weighted degrees

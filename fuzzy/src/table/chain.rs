@@ -106,8 +106,8 @@ pub struct StageIndices<'a> {
 /// The stages of a rule set in the order of evaluation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Chain<'a> {
-    /// The concatenated arrays of all stages. The curves are followed by the terms that propositions about outputs
-    /// name, in the order of the propositions.
+    /// The concatenated arrays of all stages. The curves are followed by the terms of the propositions about
+    /// outputs, in the order of the propositions.
     pub table: Table<'a>,
     /// The stages.
     pub stages: &'a [Stage],
@@ -291,8 +291,7 @@ impl<'a> Chain<'a> {
         rules.map(|rule| *rule as usize).nth(indices)
     }
 
-    /// Returns the outputs without a closed form that other outputs read, and the output `risk` if it has no closed
-    /// form.
+    /// Returns those outputs without a closed form that other outputs read or that have the index `risk`.
     pub fn open(self, risk: usize) -> impl Iterator<Item = usize> + use<'a> {
         let is_read = move |output: u32| {
             let mut reads = self.parts().flat_map(|(_, indices)| indices.reads);
@@ -343,8 +342,8 @@ fn fitted<'s>(scratch: &'s mut Scratch<'_>, table: &Table<'_>) -> Option<Scratch
     })
 }
 
-/// Evaluates a stage: copies the values that it reads from the outcomes of all outputs, and writes its own outcomes
-/// there. `keep` may change these before other outputs read them.
+/// Evaluates a stage: reads the values of other outputs from `outcomes`, and writes the outcomes of the stage to
+/// `outcomes`. `keep` may change an outcome before other outputs read it.
 pub(crate) fn stage(
     indices: StageIndices<'_>,
     (inputs, values, own): (&[f64], &mut [f64], &mut [Outcome]),

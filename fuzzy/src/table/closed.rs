@@ -272,7 +272,8 @@ pub(super) fn area_and_centroid<A: Arrays>(
     (area > 0.0).then(|| (area, output.centroid((area, moment))))
 }
 
-/// Works like [`closed`]. It is a separate function because its code would take registers from that of partitions.
+/// Works like [`closed`]. It is a separate function because its code would otherwise take registers from the code for
+/// partitions.
 #[inline(never)]
 pub(super) fn closed_apart<A: Arrays, const L: usize>(
     table: &A,

@@ -29,9 +29,9 @@ pub(crate) struct Summary {
     pub(crate) support: (f64, f64),
 }
 
-/// Returns the ends of the interval of a method; both are equal for methods that give a number. Without a lower set, it is
-/// the centroid of the upper set, or the support for a method that gives an interval. `None` for the exact interval,
-/// which does not follow from the summary.
+/// Returns the ends of the interval that a type reduction gives; they are equal for a method that gives a single value.
+/// If the lower set is empty, the result is the centroid of the upper set or, for a method that gives an interval, the
+/// support. `None` for the exact interval, which cannot be computed from the summary.
 pub(crate) fn closed(method: TypeReduction, summary: Summary) -> Option<(f64, f64)> {
     let Summary {
         lower,

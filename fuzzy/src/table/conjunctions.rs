@@ -18,7 +18,8 @@ pub struct PartialConjunction<const L: usize = 1> {
 }
 
 impl PartialConjunction {
-    /// Creates the strength and the index of a rule, as [`Activation`](super::Activation) expects them.
+    /// Creates an entry with the strength and the index of a rule, in the form that [`Activation`](super::Activation)
+    /// expects.
     pub(crate) fn new(degree: f64, at: u32) -> Self {
         PartialConjunction {
             degree: [degree],

@@ -18,8 +18,8 @@ pub(crate) fn has_cells_alone<A: Arrays>(table: &A) -> bool {
 }
 
 /// Fires all rules for the values in the scratch memory, and writes the firing strengths and strongest rules there.
-/// `CELLS` is [`has_cells_alone`]; it is a constant because the code for other tables would take registers from that of
-/// cells.
+/// `CELLS` must be the result of [`has_cells_alone`]. It is a constant because the code for other tables would
+/// otherwise take registers from the code for cells.
 #[inline(always)]
 pub(crate) fn fire<A, N, P, S, const L: usize, const CELLS: bool>(
     table: &A,

@@ -225,8 +225,8 @@ impl Flank {
     }
 }
 
-/// Returns the fraction at which a smooth step of two parabolas has a degree. The step is `2 t^2` up to the middle and
-/// `1 - 2 (1 - t)^2` beyond.
+/// Returns the fraction `t` at which a smooth step of two parabolas reaches the given degree. The step is `2 t^2` up
+/// to the middle and `1 - 2 (1 - t)^2` beyond.
 fn step(degree: f64) -> f64 {
     if degree <= 0.5 {
         sqrt(0.5 * degree)

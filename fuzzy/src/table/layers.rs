@@ -24,14 +24,14 @@ pub struct LayeredSet {
     pub end_layer: u32,
 }
 
-/// The largest firing strength of a list of terms, computed as the larger one of the base of all terms but the last, and
-/// the firing strength of the last term.
+/// The largest firing strength of a list of terms. It is computed as the larger of two values: the base of all terms
+/// but the last, and the firing strength of the last term.
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[repr(C)]
 pub struct Base {
-    /// The base of all terms but the last one: its index in the set plus 1, or 0 if there is no other term. In that case
-    /// the base is 0.
+    /// The index in the set, plus 1, of the base of all terms but the last. 0 if there is no other term; the base is
+    /// then 0.
     pub others: u32,
     /// The index of the last term's firing strength among those of the output.
     pub strength: u32,
@@ -39,18 +39,19 @@ pub struct Base {
 
 /// Four layers of one term. Four numbers fill the vector registers of most processors.
 ///
-/// Each layer covers a part of the range where the term is straight and the same terms are above it. Cut at a degree h,
-/// the term has there, with `u = min(h, high)` and `v = max(u - low, 0)`,
+/// Each layer covers a part of the range where the term is straight and the same terms are above it. If the term
+/// is cut at a degree h, it has the following area and moment on this part, with `u = min(h, high)` and
+/// `v = max(u - low, 0)`:
 ///
 /// ```text
 /// area(h)   = area[0] u + area[1] v^2
 /// moment(h) = moment[0] u + moment[1] v^2 + moment[2] v^3
 /// ```
 ///
-/// The layer is the difference between these at two degrees. For a part of width w whose middle is at m (relative to
-/// the middle of the range), the coefficients are `w, -w / 2d` and `w m, -w l / 2d, s w^2 / 6d^2`, with
-/// `d = high - low`, l the value at the lower end, and s = 1 if the term falls, -1 if it rises. If it is level, the
-/// coefficients of the powers of v are 0.
+/// The layer is the difference between these at two degrees. For a part of width w whose middle is at m (relative
+/// to the middle of the range), the coefficients are `w, -w / 2d` and `w m, -w l / 2d, s w^2 / 6d^2`, with
+/// `d = high - low`, l the value at the lower end, and s = 1 if the term falls, -1 if it rises. If it is level,
+/// the coefficients of the powers of v are 0.
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(C)]
@@ -100,7 +101,8 @@ impl LayeredSet {
         &table.layers()[self.first_layer as usize..self.end_layer as usize]
     }
 
-    /// Returns the area and moment of the term of a firing strength, as if no other term were present.
+    /// Returns the area and moment of the term with the given index of a firing strength, if this strength is 1 and
+    /// there is no other term.
     pub(super) fn alone<A: Arrays>(&self, table: &A, strength: u32) -> (f64, f64) {
         let layers = self.layers(table).iter();
         let parts = layers.filter(|four| four.strength == strength);

@@ -176,8 +176,8 @@ pub struct Output {
     pub lower: u32,
 }
 
-/// The code of an output that has only the lower bounds of the firing strengths of another output. Such outputs are behind
-/// all others and have no outcomes.
+/// The code of an output that has only the lower bounds of the firing strengths of another output. Such outputs come
+/// after all others and have no outcomes.
 #[doc(hidden)] // Exported data.
 pub const LOWER_BOUNDS: u32 = u32::MAX;
 
@@ -390,7 +390,7 @@ pub(crate) fn clamp<A: Arrays, const L: usize>(
         for row in 0..L {
             input_flags.clamped[row] |= u64::from(nearest[row] != values[row]);
         }
-        // Values that are not finite are outside the range, which is rare.
+        // A value that is not finite is clamped above, and clamping is rare, so this check is usually skipped.
         if input_flags.clamped.iter().fold(0, |any, one| any | one) != 0 {
             for (infinite, value) in input_flags.infinite.iter_mut().zip(&values) {
                 *infinite |= u64::from(!value.is_finite());

@@ -55,7 +55,8 @@ where
 }
 
 /// Returns the index of the rule that contributes most to a degree of an output. Among the rules that fire, it is the
-/// one with the largest `strength degree(alone)`; if that is 0 for all rules, it is the strongest rule.
+/// one with the largest `strength degree(alone)`, where `alone` is the value of the output if only this rule fired.
+/// If that product is 0 for all rules, it is the strongest rule.
 pub(crate) fn concluded_by<A, N, P, S>(
     table: &A,
     scratch: &mut Buffers<N, P, S>,
@@ -74,7 +75,8 @@ where
     most(table, scratch, inputs, (output, &score), &mut integrate)
 }
 
-/// Returns the index of the rule with the largest product of its firing strength and `score(alone)`.
+/// Returns the index of the rule with the largest product of its firing strength and `score(alone)`, where `alone` is
+/// the value of the output if only this rule fired.
 fn most<A, N, P, S>(
     table: &A,
     scratch: &mut Buffers<N, P, S>,

@@ -2,30 +2,32 @@
 //!
 //! For weighted numbers it is the interval of `sum(w x) / sum(w)` over all weights between their bounds.
 //!
-//! The left end is reached by weights that are as large as possible for the numbers left of it, and as small as possible
-//! for the others. So it is the root c of
+//! The left end is reached by weights that are as large as possible for the numbers left of it, and as small as
+//! possible for the others. So it is the root c of
 //!
 //! ```text
 //! F(c) = sum of w_upper (c - x) over x < c  +  sum of w_lower (c - x) over x > c
 //! ```
 //!
 //! F is a convex polygon that never decreases, so Newton's method approaches the root from one side and ends after
-//! finitely many steps. The right end is its mirror image. If all lower bounds are 0, each number can be the average.
-//! `defuzzify/reduction.rs` has the same search for fuzzy sets.
+//! finitely many steps. The right end is its mirror image. If all lower bounds are 0, each number can be the
+//! average. `defuzzify/reduction.rs` has the same search for fuzzy sets.
 //!
-//! Fuzzy sets with a closed form have the reductions that are numbers, from the areas and centroids of both sets.
+//! For fuzzy sets with a closed form, only the type reductions that give a single value are supported. They are
+//! computed from the areas and centroids of the lower and the upper set.
 
 use super::closed::area_and_centroid;
 use super::closed_reduction::{Summary, closed};
 use super::operators::{larger, smaller};
 use super::{Arrays, ClosedForm, Output, State, number};
 
-/// The maximum number of steps of the search for an end. A few are enough, unless the lower set is almost empty. Then a
-/// step leaves up to two thirds of the distance to the end, so that the rest is far below rounding.
+/// The maximum number of steps of the search for an end. A few are enough, unless the lower set is almost empty. Each
+/// step may then leave up to two thirds of the distance to the end, but after this number of steps the remaining
+/// distance is far below rounding errors.
 const MAX_STEPS: usize = 250;
 
-/// A type reduction: the method that computes the interval, or the value, of an output that interval type-2 terms
-/// affect. docs/rule-sets.md has the formulas.
+/// A type reduction: the method that computes the interval, or the single value, of an output affected by
+/// interval type-2 terms. docs/rule-sets.md has the formulas.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum TypeReduction {
     /// The exact interval of all centroids, which the algorithms of Karnik and Mendel approximate with samples.
@@ -170,7 +172,7 @@ pub(crate) fn ends_of(
     closed(method, summary)
 }
 
-/// Returns the interval of `sum(w x) / sum(w)` over all weights between their bounds; `None` if all are 0.
+/// Returns the interval of `sum(w x) / sum(w)` over all weights between their bounds; `None` if all upper bounds are 0.
 pub(crate) fn average(points: impl Iterator<Item = WeightedNumber> + Clone) -> Option<(f64, f64)> {
     let mut positive = points.clone().filter(|point| point.upper > 0.0);
     let first = positive.next()?.at;
@@ -204,7 +206,7 @@ pub(crate) fn average(points: impl Iterator<Item = WeightedNumber> + Clone) -> O
     Some((left, right))
 }
 
-/// Returns the interval of `sum(w x)` over all weights between their bounds; `None` if all are 0.
+/// Returns the interval of `sum(w x)` over all weights between their bounds; `None` if there are no points.
 pub(crate) fn sum(points: impl Iterator<Item = WeightedNumber>) -> Option<(f64, f64)> {
     let (mut low, mut high, mut is_empty) = (0.0, 0.0, true);
     for point in points {
@@ -216,8 +218,9 @@ pub(crate) fn sum(points: impl Iterator<Item = WeightedNumber>) -> Option<(f64, 
     (!is_empty).then_some((low, high))
 }
 
-/// Returns an end of the interval by Newton's method. `sums` returns the area and the moment about x of the set that is
-/// the upper one on the side of the end, and the lower one on the other side of x.
+/// Returns an end of the interval by Newton's method. `sums` returns the area and the moment about x of a set that
+/// consists of two parts: between x and the side of the requested end it equals the upper set, and on the other side of
+/// x the lower set.
 pub(crate) fn search(
     end: IntervalEnd,
     start: f64,

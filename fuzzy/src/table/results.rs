@@ -26,7 +26,7 @@ pub(crate) struct InputFlags<const L: usize> {
 }
 
 /// Returns the number of a rule, `2^52 + index`. It is as wide as a firing strength, so that a vector contains as many
-/// of them.
+/// rule numbers as strengths.
 #[inline(always)]
 pub(crate) fn number_of(rule: u32) -> f64 {
     f64::from_bits(0x4330 << 48 | u64::from(rule))
@@ -50,7 +50,8 @@ impl<const L: usize> Results<L> {
         },
     };
 
-    /// Returns the value of a row: that of its rules, or the default value if no rule fired; NaN if there is none.
+    /// Returns the value of a row: the value that rules determined, or the default value if no rule fired. NaN if there
+    /// is no value.
     #[inline(always)]
     pub(crate) fn value(&self, row: usize) -> f64 {
         let value = self.values[row];
@@ -72,7 +73,7 @@ impl<const L: usize> Results<L> {
         (self.coverage[row] > 0.0).then_some(rule_of(self.rules[row]))
     }
 
-    /// Stores the outcome of a row; of an interval, only its middle.
+    /// Stores the outcome of a row. Only the middle of an interval is stored.
     pub(crate) fn set(&mut self, row: usize, outcome: &Outcome) {
         (self.values[row], self.default_values[row]) = (f64::NAN, f64::NAN);
         let value = outcome.value().unwrap_or(f64::NAN);

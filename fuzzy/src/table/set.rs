@@ -250,8 +250,8 @@ impl<'t> SetArrays<'t> {
     /// Visits the parts of the maximum of terms that are cut off at their firing strengths.
     ///
     /// Strands are ordered from the highest to the lowest, so a strand contributes only if it is cut off above all
-    /// previous ones. It then contributes the part between their level and its own. The part in which the strand is
-    /// above its own level remains for the following strands.
+    /// previous ones. It then contributes the part in which its degree is between their level and its own level. The
+    /// part in which its degree is higher remains for the following strands.
     #[inline(always)]
     fn cut(
         &self,

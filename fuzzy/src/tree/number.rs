@@ -31,7 +31,7 @@ pub fn percentage_advice(number: f64) -> Option<String> {
         .then(|| format!("for {number} % write `{}`", number / 100.0))
 }
 
-/// Returns advice for a text that is not a number, but probably means one.
+/// Returns advice for a text that is not a number, but was probably meant as one.
 #[must_use]
 pub fn number_advice(text: &str) -> Option<String> {
     let ascii = text.trim_matches(|c: char| c.is_ascii_whitespace());

@@ -110,8 +110,8 @@ impl<'a> Fields<'a> {
     }
 
     /// Returns the value of a required key, and reports a finding if it is missing. If the mapping has a single unknown
-    /// key that resembles no known key, the missing one was probably meant. In this case, the finding about the unknown
-    /// key suggests it, and there is no second finding.
+    /// key that resembles no known key, the missing key was probably meant. In this case, the finding about the unknown
+    /// key suggests the missing key, and no second finding is reported.
     pub fn require(
         &self,
         key: &str,
@@ -123,7 +123,7 @@ impl<'a> Fields<'a> {
             return found;
         }
         let is_unlike = |finding: &&mut Diagnostic| {
-            // Once the finding suggests a missing key, its help no longer starts like this.
+            // The help of a finding that already suggests another missing key does not start like this.
             let is_open = finding
                 .help
                 .as_deref()
@@ -149,7 +149,7 @@ impl<'a> Fields<'a> {
 }
 
 impl<'a> Entry<'a> {
-    /// Works like [`Node::fields`] of the value; missing keys are reported at the key.
+    /// Reads the value as a mapping, like [`Node::fields`], but reports missing keys at the position of this key.
     pub fn fields(
         &self,
         what: &str,
@@ -383,8 +383,8 @@ impl Node {
         Diagnostic::error("wrong-type", self.span.clone(), message)
     }
 
-    /// Returns a finding for a document that is not a mapping. The text is not quoted, because it may come from any
-    /// file.
+    /// Returns a finding for a document that is not a mapping. The text is not quoted, because the document may be
+    /// any file, for example one with secrets.
     #[must_use]
     pub fn unexpected_document(&self, what: &str) -> Diagnostic {
         let message = match &self.value {
@@ -490,7 +490,7 @@ impl Node {
 }
 
 impl Scalar {
-    /// Returns the number if this is one, in YAML's notations for decimal numbers, infinities and NaN.
+    /// Returns the number if this scalar is one, in YAML's notations for decimal numbers, infinities and NaN.
     #[must_use]
     pub fn as_number(&self) -> Option<f64> {
         if self.quoted {

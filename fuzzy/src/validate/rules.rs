@@ -162,7 +162,7 @@ impl<'m> Validator<'m> {
 
     pub(super) fn known_output(&mut self, name: &Name) -> Option<&'m Variable> {
         let found = self.outputs.get(name.text.as_str()).copied();
-        // A model without outputs is reported on its own.
+        // A model without outputs is reported separately.
         if found.is_none() && !self.outputs.is_empty() {
             let finding = if self.inputs.contains_key(name.text.as_str()) {
                 let message = format!("`{}` is an input; a conclusion sets outputs", name.text);
@@ -184,7 +184,7 @@ impl<'m> Validator<'m> {
         variable: &'m Variable,
         (hedges, term): (&[Hedge], &Name),
     ) {
-        // Terms that could not be parsed, and outputs without terms, are reported on their own.
+        // Terms that could not be parsed, and outputs without terms, are reported separately.
         let is_reported = self.unread.contains(&variable.name.as_str())
             || (kind == "output" && variable.terms.is_empty());
         if is_reported || variable.terms.iter().any(|t| t.name == term.text) {
@@ -194,7 +194,7 @@ impl<'m> Validator<'m> {
         let mut finding = Diagnostic::error("unknown-term", term.span.clone(), message);
         let known = variable.terms.iter().map(|t| t.name.as_str());
         finding.help = suggest(&term.text, known).or_else(|| Some("add terms to it".into()));
-        // For example `partition: [10, 20, 30]`, reported once.
+        // If all names are numbers, as in `partition: [10, 20, 30]`, a single finding is reported for the variable.
         let number = |term: &Term| term.name.parse::<f64>().is_ok();
         if variable.terms.iter().all(number) && term.text.parse::<f64>().is_err() {
             let names = ["low", "medium", "high"].into_iter().map(String::from);

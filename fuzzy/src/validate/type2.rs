@@ -14,7 +14,7 @@ const EQUAL: f64 = 1e-12;
 /// The number of steps over the range in which curved membership functions are compared.
 const STEPS: u32 = 400;
 
-/// The number of steps of the search for the largest difference between two values that were compared.
+/// The number of steps in the search for the largest difference within the interval between two compared values.
 const SEARCH: usize = 60;
 
 impl Validator<'_> {
@@ -88,7 +88,7 @@ impl Validator<'_> {
         }
     }
 
-    /// Requires that the interval of an output that type-2 terms affect can be computed.
+    /// Requires that the intervals of outputs affected by type-2 terms can be computed.
     pub(super) fn interval_outputs(&mut self, spans: &Spans) {
         let model = self.model;
         let no_spans = VariableSpans::default();

@@ -391,7 +391,7 @@ impl Validator<'_> {
         }
     }
 
-    /// Requires that a name that a consequent reads is an input or an output.
+    /// Requires that `name`, which a consequent reads, is an input or an output.
     pub(super) fn is_read(&mut self, name: &str, here: &Range<usize>) {
         if !self.inputs.contains_key(name) && !self.outputs.contains_key(name) {
             let finding = self.unknown_input(name, here);

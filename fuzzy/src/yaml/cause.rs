@@ -137,7 +137,8 @@ fn content_at(text: &str, start: usize) -> Option<(usize, &str)> {
     Some((start + line.len() - content.len(), content.trim_end()))
 }
 
-/// Returns a finding for a line such as `unit:°C`. The message does not quote the text, which may be any file.
+/// Returns a finding for a line such as `unit:°C`. The message does not quote the text, because it may come from any
+/// file, for example one with secrets.
 fn no_space_behind_colon(text: &str, start: usize) -> Option<Diagnostic> {
     let (at, content) = content_at(text, start)?;
     let (key, value) = content.split_once(':')?;

@@ -71,7 +71,7 @@ fn headless(lines: &[(usize, &str)]) -> Option<(&'static str, &'static str)> {
     }
 }
 
-/// Returns whether the first two lines have the same number of cells, more than one.
+/// Returns whether the first two lines have the same number of cells, and this number is greater than 1.
 fn is_table(first: &str, second: Option<&str>) -> bool {
     let cells = |line: &str, sign: char| line.split(sign).count();
     let is_yaml = |line: &str| {

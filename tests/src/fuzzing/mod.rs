@@ -33,7 +33,7 @@ pub struct Target {
     pub share: u64,
 }
 
-/// All targets, except for the plans of the C library, which `tests/c/damage.c` damages.
+/// All targets. Plans for the C library are not among them: `tests/c/damage.c` damages these.
 pub const TARGETS: [Target; 8] = [
     Target {
         name: "flight_log",

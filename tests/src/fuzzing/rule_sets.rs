@@ -8,8 +8,8 @@ use fuzzy::Engine;
 use super::assert_harmless;
 use crate::board::{findings, reported};
 
-/// Any text in any format of other programs gives a model that is written in all of them and read again, or findings inside the
-/// text.
+/// Checks that any text in a format of another program gives either findings located inside the text, or a model. If a
+/// format supports the model, the text written in this format can be read again.
 pub fn other_programs(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else {
         return;
@@ -50,8 +50,8 @@ pub fn rule(bytes: &[u8]) {
     }
 }
 
-/// Any text gives a rule set that is saved, loaded as itself, compiled and analysed, or findings inside the text. Findings can
-/// be drawn.
+/// Checks that any text gives either findings located inside the text, or a rule set. The rule set must be the same
+/// after it is saved and loaded, compile, and be analysed without a panic. Drawn findings must be safe on a terminal.
 pub fn rule_set(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else {
         return;
@@ -87,8 +87,8 @@ pub fn rule_set(bytes: &[u8]) {
     }
 }
 
-/// Any two texts, as a profile and its rule set, give findings inside the text, or an estimator whose risks are in
-/// their range and whose plan gives the same risks on board.
+/// Checks that any two texts, as a profile and its rule set, give either findings located inside the profile, or
+/// an estimator whose risks are finite and whose plan gives the same risks on board.
 pub fn profile(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else {
         return;

@@ -56,7 +56,7 @@ pub struct Balance {
 pub struct Trims(Averages);
 
 impl Balance {
-    /// The balance of a period in the air that begins with trims from before a gap.
+    /// Creates the balance of a period in the air, starting with the trims from before a gap.
     pub fn new(trims: Trims) -> Balance {
         Balance {
             trims,
@@ -137,7 +137,8 @@ impl Balance {
         self.found().is_some()
     }
 
-    /// Whether the motors are no farther apart than they were recently.
+    /// Whether the commands of the motors are about as close together as they were recently, or too little is known to
+    /// compare them.
     pub fn is_together(&self, commands: &[f64]) -> bool {
         let count = commands.len() as f64;
         let mean = commands.iter().sum::<f64>() / count;

@@ -17,7 +17,7 @@ use super::{
 
 /// A time on the ground shorter than this, in seconds, is not a landing.
 const TOUCH_S: f64 = 1.0;
-/// If motors begin to idle within this time after a high risk, in seconds, this is not a landing.
+/// A time in seconds. If the motors begin to idle within this time after a high risk, the vehicle has not landed.
 const TROUBLE_S: f64 = 2.0;
 /// Motors that idle for this long in the air, in seconds, indicate a fall.
 const FALL_S: f64 = 3.0;
@@ -227,7 +227,7 @@ struct AirborneResults {
     episodes: Vec<RaisedEpisode>,
     unbalanced: Option<BalanceFinding>,
     trims: Trims,
-    /// Whether an alarm was raised at the end.
+    /// Whether an alarm was active at the end.
     level_at_end: bool,
 }
 
@@ -262,7 +262,8 @@ impl AirborneState {
         }
     }
 
-    /// Whether the level is above GOOD.
+    /// Whether an alarm is active: the level is above GOOD, a finding of the balance is open, or the motors do not yet
+    /// work as before an alarm.
     fn is_alarm(&self) -> bool {
         self.levels.level > Level::Good || self.balance.is_open() || self.in_doubt_s.is_some()
     }
@@ -370,7 +371,7 @@ impl AirborneState {
         elevated
     }
 
-    /// An alarm lasts until the motors have worked as before the alarm for `clear_after_s`.
+    /// Updates `in_doubt_s`. An alarm lasts until the motors have worked as before the alarm for `clear_after_s`.
     fn doubt(&mut self, t_s: f64, verdict: &VerdictSettings) {
         let is_alarm = self.levels.level > Level::Good;
         let is_back = verdict.notices.imbalance.is_none() || self.balance.is_back;

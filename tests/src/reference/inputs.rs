@@ -37,7 +37,7 @@ pub struct VehicleInputs<'a> {
 }
 
 impl Observation {
-    /// The observation of a source in a sample.
+    /// Computes the observation of an input's source from one sample; `span` is the time span of the sample.
     pub fn new(
         profile: &Profile,
         source: &Source,

@@ -44,7 +44,8 @@ const GRID: u32 = 48;
 /// An interval on which the set is smooth.
 type Piece = (f64, f64);
 
-/// Evenly spaced positions in a piece. The first and the last are inside its ends by the share `inside` of its width.
+/// Returns evenly spaced positions in a piece. The first and the last position are at a distance of `inside` times the
+/// width of the piece from its ends.
 fn grid((from, to): Piece, inside: f64) -> impl Iterator<Item = f64> {
     let rounding = 4.0 * f64::EPSILON * from.abs().max(to.abs());
     let inside = (inside * (to - from)).max(rounding).min(0.1 * (to - from));

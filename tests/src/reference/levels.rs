@@ -25,13 +25,13 @@ pub struct Moment {
 pub struct RaisedEpisode {
     /// The worst level of the period.
     pub level: Level,
-    /// Time since which the first raised level was reached.
+    /// The start of the period in which the thresholds of the first raised level were reached without interruption.
     pub from_s: f64,
     /// Time at which a level was first raised.
     pub raised_s: f64,
     /// Time at which the level became FAIL.
     pub failed_s: Option<f64>,
-    /// Time at which a level was last reached.
+    /// The last time at which the thresholds for raising a level were reached.
     pub to_s: f64,
 }
 
@@ -46,7 +46,7 @@ pub struct Levels {
     /// The current level.
     pub level: Level,
     held_s: f64,
-    /// Whether FAIL is being reached, for any duration.
+    /// Whether the latest risks reach the thresholds of FAIL, no matter for how long.
     reaches_fail: bool,
     all: Vec<RaisedEpisode>,
 }
@@ -121,7 +121,8 @@ impl Levels {
     pub fn end(&mut self, settings: &VerdictSettings, landed_s: Option<f64>) -> Vec<RaisedEpisode> {
         let ended = std::mem::take(self);
         let mut all = ended.all;
-        // A landing cancels an open WARN that was raised just before it, unless FAIL is being reached.
+        // A landing cancels an open WARN that was raised just before it, unless the thresholds of FAIL are reached at
+        // the landing.
         let is_late = |open: &RaisedEpisode| {
             landed_s.is_some_and(|t_s| t_s - open.raised_s < settings.quiet_before_landing_s)
         };

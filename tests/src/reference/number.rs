@@ -73,7 +73,7 @@ pub(super) struct Dual {
 }
 
 impl Dual {
-    /// The value of a function, given its derivative there.
+    /// Applies the chain rule: `value` and `derivative` are those of a function at this number.
     fn chain(self, value: f64, derivative: f64) -> Self {
         // The derivative of a constant is 0, even if the slope of the function is infinite.
         let slope = if self.slope == 0.0 {

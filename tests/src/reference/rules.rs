@@ -19,7 +19,7 @@ use super::shapes::{membership, parameters};
 pub struct Set<'a> {
     pub low: f64,
     pub high: f64,
-    /// The ends of the range and all positions at which a shape has a parameter.
+    /// The ends of the range, and the parameters of shapes that are positions.
     pub cuts: Vec<f64>,
     /// The positions of singletons, if all terms are singletons; the degrees between them are ignored.
     pub places: Vec<f64>,
@@ -34,7 +34,8 @@ pub struct Set<'a> {
 pub type Defuzzify<'a> = &'a dyn Fn(&Set<'_>) -> Option<f64>;
 
 /// The value of each output at a point; `None` if no rule fires and there is no default. Integrals
-/// are sums of `samples` samples between every two positions at which a shape has a parameter.
+/// are sums of `samples` samples between every two neighbouring positions given by parameters of
+/// shapes.
 pub fn evaluate(model: &Model, point: &[f64], samples: usize) -> Vec<Option<f64>> {
     evaluate_with(model, point, &|set| Some(sampled(set, samples)))
 }

@@ -78,8 +78,8 @@ pub(super) fn aggregated<T: Number>(fired: &[FiredTerm<'_>], operators: Operator
     })
 }
 
-/// The activated degree of a term at `x`. If the strength equals the highest degree of the term except for rounding, it cuts
-/// nothing off. If the drastic operator cuts off a term, a single peak does not remain.
+/// The activated degree of a term at `x`. If the strength equals the highest degree of the term except for rounding, it
+/// cuts nothing off. If the drastic operator cuts off a term, its plateaus remain, but a single peak does not.
 fn activate<T: Number>(
     implication: Conjunction,
     (strength, highest, term): FiredTerm<'_>,

@@ -6,7 +6,7 @@ use fuzzy::model::MembershipFunction;
 
 use super::number::Number;
 
-/// The positions at which a shape has a parameter.
+/// The parameters of a shape that are positions on the axis, and positions that follow directly from its parameters.
 pub(super) fn parameters(shape: &MembershipFunction) -> Vec<f64> {
     match *shape {
         MembershipFunction::Triangle { left, peak, right } => vec![left, peak, right],

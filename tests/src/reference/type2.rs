@@ -99,12 +99,13 @@ fn is(model: &Model, point: &[f64], proposition: &Proposition) -> Bounds {
     ends
 }
 
-/// From the areas and moments of the lower and the upper set.
+/// The Nie-Tan type reduction, from the areas and moments of the lower and the upper set.
 fn nie_tan([lower, upper]: [(f64, f64); 2]) -> f64 {
     (lower.1 + upper.1) / (lower.0 + upper.0)
 }
 
-/// From the areas and moments of the lower and the upper set; without a lower set the centroid of the upper one.
+/// The Begian-Melek-Mendel type reduction, from the areas and moments of the lower and the upper set; if the lower set
+/// is empty, the centroid of the upper set.
 fn begian_melek_mendel([lower, upper]: [(f64, f64); 2]) -> f64 {
     let upper = upper.1 / upper.0;
     match lower.0 > 0.0 {

@@ -18,8 +18,8 @@ pub struct Area {
     weight: f64,
 }
 
-/// The areas. Real vehicles are few, and half of the real flights are of one vehicle: the areas of real flights have two
-/// fifths of the total weight.
+/// The sets of rows whose areas are part of the score. There are few real vehicles, and half of the real flights are of
+/// one vehicle. Therefore the areas of real flights have only two fifths of the total weight.
 pub const AREAS: [Area; 8] = [
     Area {
         name: "real",

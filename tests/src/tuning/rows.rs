@@ -49,7 +49,7 @@ pub struct Row {
 
 /// The tables to read.
 pub struct Data<'a> {
-    /// The rows of each set.
+    /// Each data set, with the table of its rows.
     pub sets: [(Set, &'a Path); 4],
     /// Tables of real flights with columns `id` and `upsets` (`TIME=KIND;..`): rows after an upset, in the same time in the air,
     /// are excluded.

@@ -38,8 +38,8 @@ pub fn risks_pct(
     rows.iter().map(risk_pct).collect()
 }
 
-/// The shares in `bands` bands of equal width from 0 to 100 %, for the rows of some data sets. Real flights have twice as many
-/// rows per second as simulated ones, so every second row of them counts.
+/// The shares in `bands` bands of equal width from 0 to 100 %, for the rows of some data sets. Real flights have twice
+/// as many rows per second as simulated ones, so only every second row of a real flight counts.
 pub fn shares(rows: &[Row], risks_pct: &[f64], bands: usize, is_in: fn(Set) -> bool) -> Vec<Share> {
     let mut shares = vec![Share::default(); bands];
     let mut seen: HashMap<u32, usize> = HashMap::new();

@@ -29,7 +29,7 @@ const FIRST_US: u64 = (1 << 32) - 60_000_000;
 
 /// The sources of Lua 5.3, which the package `lua-src` contains.
 fn sources() -> PathBuf {
-    // The packages for other platforms need not be present.
+    // The packages for other platforms may not have been downloaded, so only those for this platform are listed.
     let version = Command::new("rustc").arg("-vV").output().unwrap();
     let version = String::from_utf8(version.stdout).unwrap();
     let mut lines = version.lines();
@@ -182,10 +182,10 @@ pub(super) struct Run {
     pub(super) values: usize,
     /// The reason why the autopilot could not be armed.
     pub(super) blocks: Option<String>,
-    /// Instructions of a call: the maximum at the start, the maximum in flight, and the mean in flight.
+    /// The number of instructions of a call: the maximum at the start, the maximum in flight, and the mean in flight.
     pub(super) instructions: [f64; 3],
-    /// The size of a pointer in bytes; then the bytes in use before the script, with the script after a garbage collection, at
-    /// the peak at the start, and at the peak in flight.
+    /// The size of a pointer in bytes, followed by the bytes in use at four times: before the script is loaded, with
+    /// the script after a garbage collection, at the peak at the start, and at the peak in flight.
     pub(super) heap: [u64; 5],
 }
 

@@ -487,8 +487,9 @@ fn signals_of_two_and_missing_ones_are_the_same_in_the_script() {
     );
 }
 
-/// The rules of the paper conclude `strain`, which `risk` reads, partly through `trouble`: once with minimum and maximum over
-/// partitions, and once with sums of products.
+/// The rules of the paper are changed so that they conclude `strain`. Further rules conclude `risk` from `strain`,
+/// partly through `trouble`. The test runs once with minimum and maximum over partitions, and once with sums of
+/// products.
 #[test]
 fn the_script_evaluates_outputs_that_read_other_outputs() {
     let folder = Folder::new();

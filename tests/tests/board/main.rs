@@ -462,7 +462,8 @@ fn outputs_without_a_closed_form_are_refused_with_alternatives() {
     );
 }
 
-/// The rule sets of `tests/onboard`, which use every array of a table. Each input is the last value of a signal.
+/// A profile for each rule set of `tests/onboard`; together, these rule sets use every array of a table. Each input is
+/// the last value of a signal.
 fn profiles_of_every_kind(folder: &Folder) -> Vec<(String, Estimator, String)> {
     let rule_sets = Path::new(env!("CARGO_MANIFEST_DIR")).join("onboard");
     let mut profiles = Vec::new();

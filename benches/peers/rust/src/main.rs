@@ -44,7 +44,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (variables, sentences) = read(&std::fs::read_to_string(format!("{folder}/{system}.fll"))?)?;
     let points = std::fs::read_to_string(format!("{folder}/{system}.points"))?;
     let mut rows = Vec::new();
-    // Fewer points for many rules, because these programs would need minutes for all.
+    // Rule sets with many rules are evaluated at fewer points, because these programs would need minutes for all
+    // points.
     for line in points
         .lines()
         .take(if sentences.len() > 100 { 64 } else { 1024 })
@@ -215,7 +216,8 @@ fn oxictl(
     Ok(())
 }
 
-/// Prints the fastest of many rounds, and the largest difference from the values in the last column of the rows.
+/// Prints the time per call in the fastest of many rounds, and the largest error in percent of the output's range. The
+/// exact values are in the last column of the rows.
 fn report(
     system: &str,
     program: &str,

@@ -1,8 +1,8 @@
-//! `flagred-web-bindgen MODULE FOLDER NAME` generates JavaScript and type declarations for a compiled module, and the
-//! matching module.
+//! `flagred-web-bindgen MODULE FOLDER NAME` processes a compiled module: it writes the module for the web, and
+//! JavaScript and type declarations for it.
 //!
-//! It does the same as the program `wasm-bindgen --target web`, which must have the version that the module was
-//! compiled with. Here Cargo.lock ensures the right version, and nothing needs to be installed.
+//! The program `wasm-bindgen --target web` does the same, but must have the version with which the module was
+//! compiled. Here, Cargo.lock ensures the right version, and nothing needs to be installed.
 
 use std::{env, process::ExitCode};
 

@@ -141,8 +141,8 @@ impl DataTable {
         })
     }
 
-    /// Moves the numbers of a rule set to reduce its error on the rows, like `flagred tune`. Returns a JSON object
-    /// with the new text. `watch` is called with the step, the error so far and the text so far.
+    /// Changes the numbers of a rule set to reduce its error on the rows, like `flagred tune`. Returns a JSON
+    /// object with the new text. `watch` is called with the step, the error so far and the text so far.
     pub fn tune(&self, text: &str, watch: &Function) -> Result<String, JsError> {
         let model = parsed(text)?;
         let rows = self.usable(&model)?;

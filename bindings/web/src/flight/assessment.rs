@@ -79,7 +79,7 @@ impl Assessment {
         serde_json::to_string(&signals).map_err(|error| failure(error, None))
     }
 
-    /// The curves of some signals as HTML, in the form of a part of the report.
+    /// Charts of the signals with these names as HTML, like those in a part of the report.
     #[wasm_bindgen(js_name = signalCharts)]
     pub fn signal_charts(
         &self,
@@ -102,7 +102,7 @@ impl Assessment {
     }
 }
 
-/// The documents of assessments as printed by the command line: one, or an array.
+/// Returns assessments as JSON, as the command line prints them: a document for one flight, an array for several.
 pub(super) fn documents(assessments: &[&Assessment]) -> Result<String, JsError> {
     let texts = assessments.iter().map(|assessment| {
         let Subject {

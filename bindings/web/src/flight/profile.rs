@@ -19,14 +19,14 @@ pub struct Profile {
     /// The name in findings.
     name: String,
     pub(super) loaded: Rc<Loaded>,
-    /// The rule set that replaces the one that the profile names.
+    /// The text of a rule set that is used instead of the one that the profile names.
     rules: Option<String>,
 }
 
 #[wasm_bindgen]
 impl Profile {
-    /// Returns the shipped profile with the given name, or a profile from a text, to which findings
-    /// refer by that name. A given rule set replaces the one that the profile names.
+    /// Returns the shipped profile called `name`, or the profile in `text`; findings then refer to
+    /// the text as `name`. If `rules` is given, it replaces the rule set that the profile names.
     #[wasm_bindgen(constructor)]
     pub fn new(
         name: String,
@@ -66,7 +66,8 @@ impl Profile {
         self.loaded.profile.text().to_owned()
     }
 
-    /// The warnings about the profile, displayed in its text; empty if there are none. They do not prevent its use.
+    /// The warnings about the profile, with the lines of its text that they refer to; empty if there are none. They do
+    /// not prevent its use.
     #[wasm_bindgen(getter)]
     pub fn warnings(&self) -> String {
         drawn(
@@ -76,8 +77,8 @@ impl Profile {
         )
     }
 
-    /// The signals that must be read from a log to assess it and to draw its report, except for signals that a reader
-    /// may add to the report.
+    /// The signals that must be read from a log to assess it and to draw its report. Signals that a reader may add to
+    /// the report are not included.
     #[wasm_bindgen(getter)]
     pub fn signals(&self) -> Vec<String> {
         flagred_report::signals(&self.loaded.estimator)
@@ -90,8 +91,8 @@ impl Profile {
         serde_json::to_string(verdict).map_err(|error| failure(error, None))
     }
 
-    /// The same profile with other thresholds and times, as JSON in the layout of `verdict`; omitted ones do not
-    /// change.
+    /// Returns the same profile with other thresholds and times. `changes` is JSON in the layout of `verdict`;
+    /// values that it omits do not change.
     #[wasm_bindgen(js_name = withVerdict)]
     pub fn with_verdict(&self, changes: &str) -> Result<Profile, JsError> {
         let changes: Value = serde_json::from_str(changes).map_err(|error| failure(error, None))?;
@@ -117,7 +118,8 @@ fn shipped_text(name: &str) -> Result<String, JsError> {
     })
 }
 
-/// Returns the error for a file that a profile names: a profile given as a text has no folder.
+/// Returns the error for a rule set file that a profile names: a profile that is given as text has no folder in which
+/// to look for the file.
 fn no_file(path: &Path) -> Result<String, String> {
     Err(format!("`{}` cannot be read", path.display()))
 }
@@ -134,7 +136,7 @@ fn refusal<E: std::fmt::Display>(error: LoadError<E>) -> JsError {
     }
 }
 
-/// Displays findings in their text.
+/// Formats findings together with the lines of the text that they refer to.
 fn drawn(findings: &fuzzy::Findings, file: &str, text: &str) -> String {
     let style = Style {
         colored: false,

@@ -1,4 +1,4 @@
-//! Parts of an open text that are added, changed, renamed and removed by forms.
+//! The parts of an open text, and the edits by which forms add, change, rename and remove them.
 
 use std::ops::Range;
 

@@ -72,7 +72,8 @@ struct VariableOverview<'a> {
     unit: Option<&'a str>,
     low: f64,
     high: f64,
-    /// The part of the range to show, around the part in which the terms change.
+    /// The part of the range to show: the whole range, or only the part in which the terms' degrees change, with a
+    /// margin, if that part is small.
     shown: [f64; 2],
 }
 
@@ -200,8 +201,8 @@ impl RuleSet {
         json(&Explained::new(&self.model().name, &explanation).with_reasons(silent, changes))
     }
 
-    /// Values for the inputs that are not axes: those in `fixed` that are finite, otherwise the middle of the range,
-    /// or a value at which the output varies more.
+    /// Chooses a value for each input that is not an axis: the one in `fixed` if it is finite; otherwise the middle
+    /// of the range, or the peak of a term if the output varies more there.
     pub fn held(&self, output: usize, axes: &[usize], fixed: &[f64]) -> Vec<f64> {
         let fixed: Vec<Option<f64>> = fixed.iter().map(|x| x.is_finite().then_some(*x)).collect();
         let x = axes.first().copied().unwrap_or(0);

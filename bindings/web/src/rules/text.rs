@@ -236,7 +236,8 @@ struct DrawnVariable<'a> {
     is_output: bool,
     low: Option<f64>,
     high: Option<f64>,
-    /// The part of the range to show, around the part in which the terms change.
+    /// The part of the range to show: the whole range, or only the part in which the terms' degrees change, with a
+    /// margin, if that part is small.
     shown: [Option<f64>; 2],
     terms: Vec<DrawnTerm<'a>>,
 }

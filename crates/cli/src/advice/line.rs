@@ -37,7 +37,7 @@ impl<'a> Line<'a> {
         {
             return Some(advice.replace("VALUE", value.unwrap_or("COLUMN")));
         }
-        // For example `--format fis` for `--fis`.
+        // The name of an option may have been given as a value, as in `--format fis` instead of `--fis`.
         let is_choice = [
             "--format",
             "--language",
@@ -162,7 +162,7 @@ impl<'a> Line<'a> {
                 "separate the values by commas: `{option} {value},{shown}`"
             ));
         }
-        // For example `--hold temperature 5`.
+        // `INPUT=VALUE` may have been given as two words, as in `--hold temperature 5`.
         if let Some([option, value]) = before
             && self.arg(option).is_some_and(|arg| {
                 let names = arg.get_value_names().unwrap_or_default();

@@ -47,7 +47,7 @@ pub(crate) fn improve(error: &mut clap::Error, program: &Command, words: &[OsStr
     error.insert(ContextKind::Suggested, ContextValue::StyledStrs(advice));
 }
 
-/// Recognises a file behind an option that prints to standard output and takes no file, as in `--csv out.csv`.
+/// Recognises a file name after an option that prints to standard output and takes no file, as in `--csv out.csv`.
 pub(crate) fn file_behind_switch(program: &Command, words: &[OsString]) -> Option<Failure> {
     let words = words.iter().skip(1).map(|word| word.to_str());
     let words: Vec<String> = words
@@ -159,7 +159,7 @@ fn advice(error: &clap::Error, program: &Command, words: &[String]) -> Option<St
             }
         }
         ErrorKind::WrongNumberOfValues => {
-            // For example `--range 1000-2000`.
+            // Two values may have been given as one word, as in `--range 1000-2000`.
             let option = wrong(ContextKind::InvalidArg)?.split(' ').next()?;
             let value = value_of(words, option)?;
             let parts = value.split(|c: char| !c.is_ascii_digit());

@@ -141,13 +141,13 @@ pub(super) const RENAMED: &[(&str, &str)] = &[
     ("--ardupilot", "--lua"),
 ];
 
-/// Options here whose value is a file to write.
+/// Options of flagred that take the name of a file to write.
 pub(super) const WRITTEN: &[&str] = &["--output", "--svg", "--html"];
 
-/// Options here whose value is a file with the name of the option as its extension.
+/// Options of flagred that take the name of a file whose extension is the name of the option: `--svg map.svg`.
 pub(super) const PICTURES: &[&str] = &["--svg", "--html"];
 
-/// Options of other programs for the file that is a positional argument here.
+/// Options by which other programs name a file that is a positional argument of flagred.
 pub(super) const FILES: &[&str] = &[
     "--file",
     "--files",

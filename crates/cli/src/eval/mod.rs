@@ -158,7 +158,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let tally = if output.is_stdout() {
         let mut out = Stdout::data();
         out.write_all(&head)?;
-        // A stream may have no end. A file is evaluated to its end even if nobody reads the output, for the report.
+        // A stream may be endless, so its evaluation stops when nobody reads the output any more. A file is evaluated
+        // to its end in any case, because the report covers all rows.
         let is_stream = arguments.points == Path::new("-");
         let is_read = |out: &Stdout| !(is_stream && out.is_closed());
         let evaluated = pipeline::run(&plan, reader, &mut out, is_read)?;

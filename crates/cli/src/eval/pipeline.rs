@@ -107,7 +107,7 @@ fn write<W: Write + ?Sized>(
             Ok(Ok((block, of_block))) => {
                 out.write_all(&block.written)?;
                 tally.merge(of_block);
-                // Fails only if the table was read to its end; the spare block is then not needed.
+                // Sending fails only if the table was read to its end; the spare block is then not needed.
                 let _ = spare.send(block);
             }
         }

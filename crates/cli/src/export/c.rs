@@ -1,4 +1,5 @@
-//! A plan or a rule set as C. Numbers read back bit for bit. The codes are those of `flagred-c`.
+//! Writes a plan or a rule set as C. Numbers read back bit for bit. The numeric codes of enumerations are those of
+//! `flagred-c`.
 
 use std::fmt::Write;
 

@@ -55,7 +55,8 @@ pub(crate) struct Arguments {
     /// Write a rule set as FML, for JFML and other IEEE 1855 programs
     #[arg(long, group = "language")]
     fml: bool,
-    /// Leave out what the format cannot express, also whole rules, in Rust and C also `samples`; results may differ
+    /// Leave out what the format cannot express, including whole rules (for Rust and C, also `samples`); results may
+    /// differ
     #[arg(long, conflicts_with = "lua")]
     lossy: bool,
     /// The profile or rule set to export: `flagred`, `flagred-paper`, `flagred-battery`, or a file. `--lua` needs a profile,

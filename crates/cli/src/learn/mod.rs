@@ -103,7 +103,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let claims = arguments.rows.claims.about(learned)?;
     let settings = settings(arguments, &claims);
     let mut learner = Learner::new(&model, settings.clone()).map_err(wrong)?;
-    // A learned rule concludes a term, and values beyond the range belong to no term.
+    // `--clamp` also clamps the output, because a learned rule concludes a term, and values beyond the range belong to
+    // no term.
     let data = rows::read(&arguments.rows, whole, Clamped::All)?;
     let mut rows = Vec::with_capacity(data.rows.len());
     let mut refused = data.refused;

@@ -97,7 +97,7 @@ mod tests {
         assert!(read_one(&mut all).is_none());
     }
 
-    /// A buffer of an excessive announced length is not allocated.
+    /// If a header announces an excessive length, no buffer of that length is allocated.
     #[test]
     fn a_message_without_end_takes_little_memory() {
         for length in ["18446744073709551615", "99999999999999", "3000000000"] {

@@ -102,7 +102,7 @@ pub(super) fn against(
     Ok(exit)
 }
 
-/// Returns what follows the name of an output in the name of another column, such as `_rules`.
+/// Returns the suffix by which the name of another column extends the name of an output, such as `_rules`.
 fn other_suffix<'t>(evaluated: &MapSource, table: &'t Table, output: usize) -> Option<&'t str> {
     let output = evaluated.engine.output_names().nth(output)?;
     let mut columns = table.header.names.iter();

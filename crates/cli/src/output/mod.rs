@@ -111,7 +111,7 @@ pub(crate) fn copied(text: &[u8], is_terminal: bool) -> Cow<'_, [u8]> {
     }
 }
 
-/// Returns whether an output is a terminal; standard output if there is none.
+/// Returns whether an output goes to a terminal; `None` stands for standard output.
 pub(crate) fn is_terminal(output: Option<&Output>) -> bool {
     output.is_none_or(Output::is_stdout) && std::io::stdout().is_terminal()
 }

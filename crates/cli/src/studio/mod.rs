@@ -114,7 +114,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(Exit::Clean)
 }
 
-/// Answers each connection in its own thread, since browsers open some before they use them.
+/// Answers each connection in its own thread, because browsers open connections before they use them.
 fn accept(listener: &TcpListener, server: &Arc<Server>) {
     let open = Arc::new(AtomicUsize::new(0));
     let unauthenticated = Arc::new(UnauthenticatedConnections::default());

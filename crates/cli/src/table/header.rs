@@ -46,12 +46,12 @@ impl Header {
             }
             let columns = self.names.iter().map(String::as_str);
             let columns = columns.filter(|name| !name.is_empty());
-            // Different capitals are the most frequent mistake.
+            // The most frequent mistake is a difference in upper and lower case.
             if let Some(column) = columns.clone().find(|it| it.eq_ignore_ascii_case(name)) {
                 let column = quoted(column);
                 return failure.help(format!("did you mean `{column}`? then add `--column {name}={column}`"));
             }
-            // For example `temperature,5,24,35`.
+            // The table may have a line for each variable instead of a column, as in `temperature,5,24,35`.
             let is_number = |name: &String| name.parse::<f64>().is_ok();
             if let [first, values @ ..] = self.names.as_slice()
                 && !is_number(first)
@@ -89,7 +89,7 @@ impl Header {
         found.next().map(|(_, word)| word)
     }
 
-    /// Advice for a row whose number of cells is not that of the header.
+    /// Advice for a row with more or fewer cells than the header.
     pub(crate) fn misfit_help(&self) -> String {
         match self.other_delimiter() {
             Some(other) => format!(

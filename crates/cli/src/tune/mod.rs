@@ -255,7 +255,8 @@ fn settings(arguments: &Arguments) -> Result<Settings, Failure> {
 
 /// Returns the usable rows as columns, and the reasons why other rows cannot be used.
 fn data(arguments: &Arguments, model: &Model) -> Result<(Data, Vec<String>), Failure> {
-    // Constants approach values beyond the range as far as they may, and `eval` compares with the same values.
+    // The output is not clamped: constants approach values beyond the range as far as they are allowed to, and `eval`
+    // computes its errors from the same values.
     let read = rows::read(&arguments.rows, model, Clamped::Inputs)?;
     let read = rows::in_range(read, model);
     outcomes(arguments, model, &read)?;
@@ -267,7 +268,7 @@ fn data(arguments: &Arguments, model: &Model) -> Result<(Data, Vec<String>), Fai
     Ok((data, refused))
 }
 
-/// Refuses rows whose outputs are not outcomes, if the loss needs these.
+/// Refuses rows whose outputs are not 0 or 1, if the loss requires outcomes of 0 and 1.
 fn outcomes(arguments: &Arguments, model: &Model, read: &rows::Data) -> Result<(), Failure> {
     let truths = read
         .rows
@@ -298,7 +299,7 @@ fn outcomes(arguments: &Arguments, model: &Model, read: &rows::Data) -> Result<(
     })
 }
 
-/// Returns a warning if the rows do not support the numbers that moved.
+/// Returns a warning if the cross-validation error rises, or if there are fewer rows than numbers that moved.
 fn warning(outcome: &TuneOutcome) -> Option<String> {
     let (rows, moved) = (outcome.rows, outcome.tuned.moved.len());
     let plural = if rows == 1 { "" } else { "s" };
@@ -408,7 +409,7 @@ struct SearchObserver<'a> {
     iterations: u32,
     checkpoint: Option<&'a Output>,
     kept: Instant,
-    /// Whether a checkpoint that could not be written has been reported.
+    /// Whether a failure to write a checkpoint has been reported.
     is_refused: bool,
 }
 
@@ -463,7 +464,7 @@ impl<'a> SearchObserver<'a> {
         self.flow()
     }
 
-    /// Called after each step of further work, which the progress bar does not count.
+    /// Called after each step of work that the progress bar does not count, such as the learning curve.
     fn more(&self, what: &'static str) -> ControlFlow<()> {
         self.bar.set_message(what);
         self.flow()

@@ -22,7 +22,8 @@ const GONE_S: f64 = 60.0;
 /// Maximum number of stored samples of a flight, in case limits become known later: a minute at 25 Hz, in 0.1 MB.
 const HISTORY: usize = 1_500;
 
-/// The identity of a vehicle. Equal systems of different senders are different vehicles, since every new autopilot has system id 1.
+/// The identity of a vehicle. Senders with the same system id count as different vehicles, since every new autopilot
+/// has system id 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct VehicleId {
     pub(crate) link: usize,

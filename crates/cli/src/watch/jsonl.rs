@@ -23,7 +23,7 @@ const SCHEMA: &str = "flagred.watch/1";
 /// The layout of `--all --jsonl`.
 const FLEET_SCHEMA: &str = "flagred.watch-all/1";
 
-/// The content of a line, with the names of docs/json.md.
+/// The content of a line. `docs/json.md` describes its fields.
 #[derive(Serialize, JsonSchema)]
 #[schemars(inline)]
 #[serde(tag = "event", rename_all = "snake_case")]

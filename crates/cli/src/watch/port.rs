@@ -17,8 +17,9 @@ const CONNECT: Duration = Duration::from_secs(3);
 /// The interval between attempts to connect.
 const RETRY: Duration = Duration::from_secs(1);
 
-/// Requested size of the system's buffer, which stores datagrams while the program does not read them: those of 500
-/// vehicles for a second, including the overhead of each packet. The default suffices for a tenth of that.
+/// The requested size of the system's buffer, which stores datagrams until the program reads them. It has space for
+/// the datagrams of 500 vehicles during a second, including the overhead of each packet. The default size suffices
+/// for a tenth of that.
 const BUFFER: usize = 4 << 20;
 
 /// An open endpoint.
@@ -73,7 +74,7 @@ struct Client {
 
 /// The result of reading from the port.
 pub(crate) enum PortEvent {
-    /// This number of bytes.
+    /// This number of bytes, which may end in the middle of a packet.
     Bytes(usize),
     /// A datagram of this number of bytes. A packet does not continue in the next datagram.
     Datagram(usize),
@@ -296,8 +297,8 @@ fn buffer(socket: &UdpSocket) -> Option<usize> {
     return None;
 }
 
-/// Returns whether an endpoint may open later without the user's help: the vehicle, its cable, the network or the name may be
-/// missing for now.
+/// Returns whether an endpoint may open later without the user's help: the vehicle, its cable or the network may be
+/// missing for now, or the host name cannot be resolved yet.
 fn is_temporary(error: &io::Error) -> bool {
     !matches!(
         error.kind(),

@@ -36,7 +36,7 @@ const HEARTBEAT_S: f64 = 1.0;
 const RISK_S: f64 = 0.25;
 /// A vehicle that sends no motor commands for this long despite requests is replaced by another one.
 const PROOF_S: f64 = 5.0;
-/// A vehicle that is silent for this long is replaced by one of another system.
+/// A vehicle that is silent for this long is replaced by a vehicle with another system id.
 const GONE_S: f64 = 30.0;
 /// Maximum number of other systems that are remembered: MAVLink has no more.
 const SYSTEMS: usize = 256;
@@ -60,7 +60,7 @@ pub(crate) struct Session<'e> {
     heartbeat_s: Option<f64>,
     /// The worst verdict of the flights so far.
     worst: Verdict,
-    /// The verdict of a part of a flight whose risk is unknown.
+    /// The verdict of a part of a flight in which the risk is unknown.
     unknown_part: Option<Verdict>,
     /// Maximum number of stored samples of a flight.
     history: usize,
@@ -69,8 +69,8 @@ pub(crate) struct Session<'e> {
 }
 
 impl<'e> Session<'e> {
-    /// Creates a session that sends with `sender`, or only listens without one. If another watch sends warnings, this
-    /// one also sends them only if it `insists`.
+    /// Creates a session that sends with `sender`, or only listens if there is none. If another watch already sends
+    /// warnings, this session does so only if it `insists`.
     pub(crate) fn new(
         estimator: &'e Estimator,
         sender: Option<Sender>,
@@ -109,7 +109,8 @@ impl<'e> Session<'e> {
         packet: &Packet<'_>,
         out: &mut SessionOutput,
     ) -> bool {
-        // Only the sender of an unknown message can be identified. The message is counted and recorded.
+        // A message of an unknown type cannot be verified. It is counted as a packet of its sender and recorded, but
+        // not evaluated.
         if packet.sound.is_none() {
             let is_followed = self.is_followed(source, packet);
             if let Some(tracked) = self.tracked.as_mut().filter(|_| is_followed) {
@@ -165,7 +166,8 @@ impl<'e> Session<'e> {
         }
     }
 
-    /// Returns whether a packet of another sender could be mistaken for the vehicle's if addresses are unknown.
+    /// Returns whether a packet of another sender could be mistaken for a packet of the vehicle if addresses are
+    /// unknown.
     pub(crate) fn is_doubtful(&self, packet: &Packet<'_>) -> bool {
         let tracked = self.tracked.as_ref();
         match doubt_of(packet) {

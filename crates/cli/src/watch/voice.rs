@@ -19,7 +19,7 @@ use fuzzy::drawing::visible;
 pub(crate) const RISK: &str = "FR_RISK";
 /// The name of the value with the elevated risk.
 pub(crate) const ELEVATED: &str = "FR_ELEV";
-/// The sender's system id until a vehicle is found: that of a ground station.
+/// The sender's system id until a vehicle is found: 255, which ground stations use.
 pub(crate) const NOBODY: u8 = 255;
 /// Maximum length of a STATUSTEXT.
 const TEXT: usize = 50;
@@ -102,7 +102,7 @@ pub(crate) fn slowed(rate_hz: f64, asker: Option<(u8, u8)>) -> String {
     }
 }
 
-/// A value with a time of the vehicle's clock.
+/// A NAMED_VALUE_FLOAT message with a time on the vehicle's clock.
 pub(crate) fn value(t_s: f64, name: &str, value: f64) -> MavMessage {
     MavMessage::NAMED_VALUE_FLOAT(NAMED_VALUE_FLOAT_DATA {
         time_boot_ms: (t_s * 1e3).round() as u32,
@@ -133,8 +133,8 @@ pub(crate) fn status(level: Level, text: &str) -> MavMessage {
 
 /// Returns the text of a change of level with its cause, in at most 50 characters: `FLAGRED: WARN risk 78 %, fighting
 /// gusts`; if motors are near a limit, `FLAGRED: WARN risk 78 %, upper limit, motor 3`; or `FLAGRED: WARN motor 3
-/// weak: +24 %`. `finding` is the finding with its texts. Without one, the level stays because the motors have changed
-/// since the alarm was raised.
+/// weak: +24 %`. `finding` is the finding with its texts. If it is `None` although the level is above GOOD, the text
+/// states that the level stays: the motors have changed since the alarm was raised.
 pub(crate) fn say(level: Level, update: &Update, finding: Option<(&Finding, &Words)>) -> String {
     if level > Level::Good && finding.is_none() {
         return format!("{PREFIX}{level} stays: motor balance is off");
@@ -182,7 +182,7 @@ mod tests {
     use super::*;
     use flagred_flightlog::mavlink::{PacketScan, Sender, Version, next_packet};
 
-    /// The text may contain names from rule sets.
+    /// Names from rule sets, which may be part of the text, can contain any characters.
     #[test]
     fn a_text_is_safe_on_a_terminal_and_ends_with_a_whole_character() {
         let MavMessage::STATUSTEXT(sent) = status(Level::Warn, "a\u{1b}[2J\u{202e}") else {

@@ -177,7 +177,7 @@ fn slow_connections_do_not_block_others() {
     for i in 0..200 {
         let mut stream = TcpStream::connect(&studio.authority).unwrap();
         let head = match i % 2 {
-            // Sent in the head, or in the body of a refused request.
+            // The bytes belong to the head, or to the body of a refused request.
             0 => "GET / HTTP/1.1\r\n",
             _ => "PUT /wrong/api/file HTTP/1.1\r\nHost: x\r\nContent-Length: 60000000\r\n\r\n",
         };

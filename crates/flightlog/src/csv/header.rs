@@ -143,7 +143,8 @@ pub(super) fn apply_header(
                 return Err(problem(line_of(key), text, help));
             }
         }
-        // For example `pwm_min_us` in place of `pwm_low_us`.
+        // A limit that seems to be missing may have been written with another name, such as `pwm_min_us` for
+        // `pwm_low_us`.
         let stem = low.split('_').next();
         let mut others = header
             .iter()
@@ -255,8 +256,8 @@ pub(super) fn apply_header(
                     )
                 })?;
                 let outside = times.iter().find(|t_s| !span_s.contains(t_s));
-                // A file that this crate wrote from a damaged log may contain any time here, which cannot result in a
-                // verdict of GOOD.
+                // A file that this crate wrote from a damaged log may contain times outside the flight. They are
+                // accepted, because a flight with a reboot in the air cannot have the verdict GOOD.
                 if let Some(outside) = outside.filter(|_| !is_ours) {
                     let (from_s, to_s) = (span_s.start(), span_s.end());
                     let text = format!(

@@ -16,7 +16,7 @@ pub(super) struct Layout {
     pub(super) time: usize,
     /// The column of each motor, in order.
     pub(super) motors: Vec<usize>,
-    /// `pwm` or `motor`.
+    /// The beginning of the names of motor columns: `pwm` or `motor`.
     pub(super) stem: &'static str,
     pub(super) in_air: Option<usize>,
     /// Column and name of each signal, and whether it is kept.
@@ -191,7 +191,7 @@ fn time_help(names: &[String]) -> String {
     names.iter().find_map(of).unwrap_or_else(|| HELP.to_owned())
 }
 
-/// The columns named `stem` and a number, with these numbers.
+/// The number and the index of each column whose name is `stem` followed by a number.
 fn numbered(names: &[String], stem: &str) -> Vec<(u64, usize)> {
     let number = |name: &String| name.strip_prefix(stem)?.parse().ok();
     names

@@ -56,7 +56,7 @@ pub(super) struct RowCollector {
     first_repeated: Option<(u64, f64)>,
     /// Counts for each motor.
     counts: Vec<CommandCounts>,
-    /// `pwm` or `motor`.
+    /// The beginning of the names of motor columns: `pwm` or `motor`.
     stem: &'static str,
     /// The error of the first unusable cell.
     refused: Option<ReadError>,
@@ -308,8 +308,8 @@ impl RowCollector {
         (self.first_s, self.last_s)
     }
 
-    /// The time on the clock of the first row. A clock that goes back for two rows or more was restarted, as after a
-    /// reboot, and continues from the last time before.
+    /// Converts a time to the clock of the first row. If the time goes back for two rows or more, the clock was
+    /// restarted, as after a reboot; the converted times then continue from the last time before the restart.
     fn on_one_clock(&mut self, t_s: f64, line: u64) -> Result<f64, String> {
         let now_s = t_s + self.offset_s;
         if now_s >= self.last_s {

@@ -84,7 +84,7 @@ pub(crate) const SPECS: &[MessageSpec] = &[
             (Field(&["Clip", "Clip0"]), "accelerometer_clips", ""),
         ],
     },
-    // The estimated position is preferred to that of the receiver.
+    // The estimated position is preferred to the position that the receiver reports.
     MessageSpec {
         message: "POS",
         signals: &[

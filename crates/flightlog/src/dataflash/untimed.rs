@@ -104,8 +104,8 @@ impl UntimedMessages {
         self.spread(self.last_s.unwrap_or_default(), 0)
     }
 
-    /// Spreads the pending messages. `from_s` is the time of the message with a time that followed the first `before`
-    /// of the pending messages.
+    /// Spreads the pending messages in time. The first `before` of them precede the message with the time `from_s`;
+    /// the others follow it.
     fn spread(
         &mut self,
         from_s: f64,

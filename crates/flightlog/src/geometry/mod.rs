@@ -43,10 +43,11 @@ pub struct Geometry {
 }
 
 impl Geometry {
-    /// The position of a motor on the vehicle, seen from above with the nose in front: `front left`, `rear`. `None` if there is
-    /// no such motor, if it is in the middle, or if the geometry is not declared or in doubt: an inferred one may be rotated.
+    /// The position of a motor on the vehicle, seen from above with the nose in front: `front left`, `rear`. `None` if
+    /// there is no such motor, if the motor is in the middle, if the geometry is in doubt, or if it is not declared,
+    /// because an inferred geometry may be rotated.
     pub fn position(&self, motor: usize) -> Option<&'static str> {
-        // 20 degrees to the side of an axis still count as on the axis.
+        // A motor up to 20 degrees to the side of an axis still counts as on the axis.
         const ON_AXIS: f64 = 0.364;
         let [roll, pitch, _] = *self.factors.get(motor)?;
         if self.basis != Basis::Declared || self.doubt.is_some() {

@@ -7,7 +7,7 @@
 /// A propeller that turns counter-clockwise pushes the nose to the right.
 const CCW: f64 = 1.0;
 const CW: f64 = -1.0;
-/// The front motors of a V frame have less leverage.
+/// The yaw factor of the front motors of a V frame, which have less leverage; the rear motors have 1.
 const V: f64 = 0.7981;
 
 pub(super) const QUAD: i64 = 1;

@@ -61,7 +61,7 @@ fn text(bytes: &[u8]) -> String {
 pub(crate) enum DecoderChange {
     /// No change in the decoder.
     Nothing,
-    /// A change of the armed state, the in-air state or the mode, which [`Decoder`] returns.
+    /// A change of the armed state, the in-air state or the mode; the methods of [`Decoder`] return the new values.
     State,
     /// A parameter is now known, or known to be unreadable.
     Parameter,

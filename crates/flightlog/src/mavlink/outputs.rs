@@ -34,7 +34,8 @@ pub(super) fn motors_expected(
 
 impl KnownOutputs {
     /// Determines motors and ranges. If no parameter names the motors, they are the first outputs, as many as the type
-    /// of vehicle has. Unknown limits are those `given` by the user, otherwise the defaults of the autopilot.
+    /// of vehicle has. If the range of the commands is unknown, it is the one `given` by the user, or else the default
+    /// of the autopilot.
     pub(crate) fn of(
         parameters: &Parameters,
         vehicle: &Vehicle,

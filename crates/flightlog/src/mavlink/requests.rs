@@ -60,7 +60,7 @@ pub struct Requests {
     has_old_way: bool,
     has_been_fast: bool,
     slow_looks: u32,
-    /// Whether the current measurement is that of a rate that has just dropped.
+    /// Whether a rate that has just dropped is being measured, before it is requested again.
     measures: bool,
     slowed_hz: Option<f64>,
     parameter_tries: u32,
@@ -74,7 +74,7 @@ impl Requests {
         Requests::default()
     }
 
-    /// Whether all parameters arrived, or were requested often enough.
+    /// Whether all parameters arrived, or were requested the maximum number of times.
     pub fn parameters_done(&self) -> bool {
         self.parameters_done
     }

@@ -53,7 +53,7 @@ impl Allocation {
     }
 
     /// The commands, clipped to 0..1; NaN if a set point is unknown. PX4 does not clip commands but lowers the set
-    /// points, so the commands of the other motors are estimates if one is clipped.
+    /// points, so if one command is clipped, the commands of the other motors are only estimates.
     pub(crate) fn commands(&self, set_points: [f64; AXES]) -> impl Iterator<Item = f64> {
         self.parts.iter().map(move |parts| {
             let products = parts.iter().zip(set_points).map(|(part, set)| part * set);

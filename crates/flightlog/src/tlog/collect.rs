@@ -274,7 +274,7 @@ impl SystemState {
         if self.decoder.mav_type().is_none() {
             return;
         }
-        // A quadplane may send the heartbeat of a plane, but not the reverse.
+        // A quadplane may send the heartbeat of a plane, but a plane does not send the heartbeat of a quadplane.
         if !(vehicle.kind == VehicleKind::Vtol && reported.kind == VehicleKind::Plane) {
             vehicle.kind = reported.kind;
             vehicle.source = reported.source;

@@ -10,7 +10,8 @@ const BOOT_MS: [u32; 2] = [30, 83];
 /// seconds.
 const LATE_S: f64 = 5.0;
 
-/// The clock of one vehicle: the times in its motor commands, continued after each by the time of reception.
+/// The clock of one vehicle. It has the times in the motor commands; between commands, it advances with the times of
+/// reception.
 #[derive(Default)]
 pub(super) struct VehicleTime {
     clock: Clock,
@@ -27,7 +28,8 @@ pub(super) struct TimedCommands {
     pub(super) rows: [Option<(f64, ServoOutputs)>; 2],
     /// Whether a row with a damaged time was dropped.
     pub(super) dropped: bool,
-    /// With the first commands: the offset of the vehicle's clock from the time of reception.
+    /// The offset of the vehicle's clock from the time of reception; `None` unless these are the first commands that
+    /// contain a time.
     pub(super) ahead_s: Option<f64>,
 }
 

@@ -10,7 +10,7 @@ pub(super) enum SignalSource {
     Length(&'static [&'static str]),
     /// As `Field`, but 0, which a receiver reports before its first position, counts as unknown.
     Position(&'static str, f64),
-    /// A field, which is unknown unless the second one is 1.
+    /// The value of the first field, which is unknown unless the second field is 1.
     If(&'static str, &'static str),
     /// An angle of the attitude quaternion in the four elements of this field.
     Angle(Angle, &'static str),

@@ -110,8 +110,8 @@ pub(super) fn key(body: &[u8]) -> Option<(&str, &[u8])> {
     Some((key, value))
 }
 
-/// The number of bytes of a text that are examined. In damaged data every byte may look like the beginning of a long
-/// message.
+/// The maximum number of bytes of a text that are examined. It bounds the time for damaged data, in which every byte
+/// may look like the beginning of a long message.
 const CHECKED: usize = 64;
 
 fn printable(text: &[u8]) -> bool {

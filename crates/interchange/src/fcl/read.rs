@@ -35,7 +35,7 @@ pub(crate) fn read(
     reader.finish()
 }
 
-/// The value of `ACCU :`, if it is present; the inner `None` is `NONE`.
+/// The value of `ACCU :`: `None` if it is missing, `Some(None)` for the method `NONE`.
 pub(super) type Accumulation = Option<Option<Aggregation>>;
 
 pub(super) struct Reader<'r, 't> {
@@ -75,7 +75,8 @@ impl<'r, 't> Reader<'r, 't> {
         is
     }
 
-    /// Whether a section ends here, with `keyword`, which is consumed. If the text ended before, an error is reported.
+    /// Whether a section ends here: at `keyword`, which is consumed, or at the end of the text, which is reported as an
+    /// error.
     pub(super) fn ends(&mut self, keyword: &str) -> bool {
         let is_cut_off = self.peek().is_none();
         if is_cut_off {

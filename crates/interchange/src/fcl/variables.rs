@@ -132,7 +132,7 @@ impl<'t> Reader<'_, 't> {
         }
         let weighted = words::is_weighted(output.defuzzifier);
         if weighted {
-            // The positions of singletons are values here.
+            // Here the positions of singletons are values, so the singletons become constants.
             for term in &mut output.variable.terms {
                 if let MembershipFunction::Singleton { at } = term.membership_function {
                     term.membership_function = MembershipFunction::Constant { value: at };
@@ -221,7 +221,7 @@ impl<'t> Reader<'_, 't> {
                     _ => "write both ends as numbers: `(0 .. 10)`".into(),
                 };
                 self.draft.error("no-range", first, message, &help);
-                // With a range, the variable does not cause a second error about a missing range.
+                // This range prevents a second error about a missing range.
                 (variable.low, variable.high) = (0.0, 1.0);
                 return true;
             };
@@ -252,8 +252,8 @@ impl<'t> Reader<'_, 't> {
         let (first, last) = (words.first()?, words.last()?);
         let span = self.draft.span(first).start..self.draft.span(last).end;
         let written = self.draft.text.get(span)?;
-        // In an output with computed values, a formula reads the inputs. Otherwise it is a degree and reads its own
-        // variable.
+        // In an output with computed values, a formula computes a value from the inputs; in other outputs, it
+        // computes a degree from its own variable.
         let inputs = self.draft.model.inputs.iter();
         let inputs: Vec<String> = inputs.map(|input| input.name.clone()).collect();
         let inputs: Vec<&str> = inputs.iter().map(String::as_str).collect();

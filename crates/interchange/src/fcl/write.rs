@@ -266,7 +266,7 @@ fn linear(coefficients: &[(String, f64)], constant: f64) -> String {
     text
 }
 
-/// Removes repeated points at the same position and height, which the shoulder of a triangle has.
+/// Removes repeated points with the same position and height, as in a triangle whose peak is at one of its ends.
 fn edges(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let mut points = points.to_vec();
     points.dedup();
@@ -310,7 +310,7 @@ fn rule_block(draft: &mut TextDraft, block: &Rules<'_>, number: &mut usize) {
     draft.line("END_RULEBLOCK");
 }
 
-/// The keywords in capitals, as IEC 61131-7 writes them.
+/// Returns a rule with its keywords in capitals, as IEC 61131-7 writes them.
 fn keywords(rule: &str) -> String {
     let words = rule.split(' ').map(|word| match word {
         "if" | "is" | "and" | "or" | "then" | "with" | "not" => word.to_ascii_uppercase(),

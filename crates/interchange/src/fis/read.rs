@@ -405,7 +405,7 @@ pub(super) fn number(draft: &mut ModelDraft<'_>, word: &str) -> Option<f64> {
     draft.number(word)
 }
 
-/// Warns if a section has another number of parts than its key announces, as in a file that was cut off.
+/// Warns if the number of parts of a section differs from the number in its key, as in a file that was cut off.
 fn count(draft: &mut ModelDraft<'_>, section: &Section<'_>, key: &str, found: usize) {
     let Some(written) = section.get(key) else {
         return;

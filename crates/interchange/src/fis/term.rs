@@ -37,7 +37,7 @@ fn decimal_comma(parameters: &str) -> Option<&str> {
 /// The parameters that a term has besides those of its shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ParameterForm {
-    /// None.
+    /// No other parameters.
     Plain,
     /// The height, as the last parameter.
     WithHeight,

@@ -171,8 +171,8 @@ pub(super) fn unsupported(rule: &Rule, inputs: Option<usize>) -> Option<&'static
     }
 }
 
-/// Reports the parts of a model with type-2 terms that the form cannot express, and returns the word for the method of
-/// type reduction.
+/// Reports the parts of a model with type-2 terms that a `.t2fis` file cannot express, and returns the word for the
+/// method of type reduction.
 pub(super) fn method(draft: &mut TextDraft, model: &Model) -> &'static str {
     let mut outputs = model.outputs.iter();
     if let Some(output) = outputs.find(|output| output.defuzzifier != Defuzzifier::WeightedAverage)

@@ -1,6 +1,6 @@
-//! Conditions on outputs. In fuzzylite, the degree of such a condition is that of the earlier rules that conclude the
-//! term: a degree is passed on, not the value of the output. The condition is therefore replaced by the conditions of
-//! those rules.
+//! Conditions on outputs. In fuzzylite, the degree of such a condition is the degree to which earlier rules concluded
+//! the term; the value of the output is not used. The condition is therefore replaced by the conditions of those
+//! rules.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -105,7 +105,7 @@ fn depth(condition: &Condition) -> usize {
     }
 }
 
-/// The replacement in the condition of one rule.
+/// Replaces the propositions about outputs in the condition of one rule.
 struct OutputReplacement<'m> {
     model: &'m Model,
     concluding_rules: &'m ConcludingRules,

@@ -107,8 +107,8 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
         if !draft.has_room(count, MAX_VARIABLES, "inputs", section.name) {
             break;
         }
-        // Values outside the range always count as the nearest value inside, whatever `lock-range` is. It is read only
-        // to report an invalid value.
+        // Values outside the range always count as the nearest value inside, whatever `lock-range` is. The line is
+        // read only to report an invalid value.
         flag(&mut draft, section, "lock-range");
         if let Some((variable, spans)) = variable(&mut draft, section, &inputs) {
             draft.model.inputs.push(variable);
@@ -246,7 +246,7 @@ fn variable(
     let ends = (draft.number(low)?, draft.number(high)?);
     let (low, high) = draft.range(range, ends, computed);
     let mut variable = Variable::new(section.name, low, high);
-    // A formula of a computed value reads the inputs; a formula of a degree reads its own variable.
+    // A formula of a computed value reads the inputs; a formula of a fuzzy set reads its own variable.
     let own = (!computed).then_some(section.name);
     variable.description = description(section);
     for written in section.all("term") {

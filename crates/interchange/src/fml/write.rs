@@ -168,7 +168,7 @@ fn variable_element(name: &'static str, variable: &Variable, kind: &str) -> Elem
         .with("type", kind)
 }
 
-/// Writes a variable; `names` are the names of the element and of its terms, and the type.
+/// Writes a variable. `names` contains the name of its element, the name of the elements of its terms, and its type.
 fn variable(draft: &mut TextDraft, variable: &Variable, names: [&'static str; 3]) -> Element {
     let mut element = variable_element(names[0], variable, names[2]);
     for term in &variable.terms {

@@ -13,7 +13,7 @@ use super::{Consequents, structure::Structure};
 /// The ridge, as a share of the diagonal elements. It pulls consequents that are supported by few rows to the mean.
 pub(super) const RIDGE: f64 = 1e-3;
 
-/// The sums for least squares, over some rows.
+/// The sums over a set of rows that a least-squares fit needs.
 #[derive(Clone)]
 struct Sums {
     squares: DMatrix<f64>,
@@ -32,7 +32,8 @@ impl Sums {
         }
     }
 
-    /// Adds a row. `factors` are the indices and factors of numbers, and `truth` is the truth minus the mean.
+    /// Adds a row. `factors` contains the indices of the numbers that the prediction of the row depends on, each with
+    /// its factor; `truth` is the truth minus the mean.
     fn add(&mut self, factors: &[(usize, f64)], truth: f64, weight: f64) {
         for (p, a) in factors {
             self.products[*p] += weight * a * truth;

@@ -223,7 +223,7 @@ struct Search<'a> {
     sorted: Vec<Vec<f64>>,
     settings: &'a Identification,
     folds: Folds,
-    /// The inputs to use, if they are given.
+    /// The indices of the inputs to use; if empty, inputs are selected.
     wanted: &'a [usize],
 }
 
@@ -334,7 +334,7 @@ impl Search<'_> {
         grown
     }
 
-    /// Peaks at quantiles from 5 to 95 %; `None` if they are not far enough apart.
+    /// Returns an axis with its peaks at quantiles from 5 to 95 %; `None` if the peaks are not far enough apart.
     fn axis(&self, input: usize, terms: usize) -> Option<Axis> {
         let values = &self.sorted[input];
         let (low, high) = (values.first()?, values.last()?);

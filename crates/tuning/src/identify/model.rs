@@ -115,7 +115,7 @@ pub(super) fn model(
     }
 }
 
-/// Whether each rule fires more strongly than any other in enough rows.
+/// Returns for each rule whether it fires more strongly than all others in enough rows.
 fn kept(data: &Data, settings: &Identification, structure: &Structure) -> Vec<bool> {
     let mut support = vec![0; structure.rules()];
     let mut strengths = Vec::new();

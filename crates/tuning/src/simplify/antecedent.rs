@@ -47,7 +47,7 @@ pub(crate) fn parts(model: &Model, condition: &Condition) -> Option<Vec<Variable
     found.into_iter().map(part).collect()
 }
 
-/// An input, or an output that rules read.
+/// Returns the input or output with the given name.
 pub(crate) fn variable<'m>(model: &'m Model, name: &str) -> Option<&'m Variable> {
     model.variables().find(|variable| variable.name == name)
 }

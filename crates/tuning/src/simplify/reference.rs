@@ -16,7 +16,7 @@ const CHUNK: usize = 4096;
 /// The maximum number of points that are tried first, because earlier candidates failed at them.
 const MAX_HARD: usize = 64;
 
-/// Points, and the outputs of the original there.
+/// The points at which models are compared, and the outputs of the original model at these points.
 pub(crate) struct ReferenceOutputs {
     /// The names of the inputs, one for each column.
     names: Vec<String>,
@@ -65,13 +65,14 @@ impl ReferenceOutputs {
         self.columns.first().map_or(0, Vec::len)
     }
 
-    /// Whether the outputs of a model are equal at all points.
+    /// Whether the outputs of a model are equal to those of the original model at all points.
     pub(crate) fn is_equal(&mut self, model: &Model) -> bool {
         let equal = self.equal.clone();
         self.compare(model, &equal, self.len()).is_some()
     }
 
-    /// The largest difference at the first points, as a share of the tolerance; `None` if it exceeds the tolerance.
+    /// The largest difference at the first [`CHUNK`] points and at those where earlier candidates failed, as a share of
+    /// the tolerance; `None` if it exceeds the tolerance.
     pub(crate) fn glance(&mut self, model: &Model) -> Option<f64> {
         let tolerances = self.tolerances.clone();
         let difference = self.compare(model, &tolerances, CHUNK)?;

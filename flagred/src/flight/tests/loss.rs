@@ -12,7 +12,7 @@ const QUAD_X: [Factors; 4] = [
     [-1.0, -1.0, -1.0],
 ];
 
-/// Hovers, then is in trouble from 10 to 30 s, then hovers until 40 s; `change` may change the motors of a sample.
+/// Simulates a flight of 40 s: hovering, with trouble from 10 to 30 s; `change` may change the motors of a sample.
 fn in_trouble(
     estimator: &Estimator,
     factors: &[Factors],
@@ -115,7 +115,7 @@ fn several_motors_that_are_unknown_in_turns_are_named() {
     );
 }
 
-/// Calm flight, then samples at limits without a valid time, then calm flight.
+/// Assesses a calm flight that is interrupted by samples without a valid time, in which motors are at their limits.
 fn around(odd_time_s: impl Fn(i32) -> f64) -> String {
     let mut assessor = Assessor::new(&shipped::flagred(), Craft::new(4), None).unwrap();
     let mut push = |t_s: f64, motors: &[f64; 4]| {

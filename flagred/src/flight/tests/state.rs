@@ -1,4 +1,4 @@
-//! Assessors that continue from the state of another.
+//! Tests of assessors that continue from the state of another assessor.
 
 use proptest::prelude::*;
 

@@ -209,7 +209,7 @@ fn a_finding_whose_interval_contains_its_threshold_tells_so() {
     );
     assert!(text.ends_with(&within), "{text}");
     assert_eq!(of(threshold_pct), None);
-    // Without steps nothing is computed.
+    // Without steps, no intervals are computed.
     let mut assessor = Assessor::new(&estimator, Craft::new(4), None).unwrap();
     rising(50.0, |sample| {
         assessor.push(sample);

@@ -123,7 +123,7 @@ fn findings_contain_all_numbers() {
     }
 }
 
-/// Authors may choose any names.
+/// Names may contain any characters; in the code of a finding, those that a code cannot contain are replaced.
 #[test]
 fn an_input_without_words_is_described_by_name_and_description() {
     let battery = shipped::flagred_battery();

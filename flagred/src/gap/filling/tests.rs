@@ -21,7 +21,7 @@ fn a_gap_between_two_knots_is_interpolated() {
     };
     assert_eq!(filled(GapMethod::Nearest)[1], 0.0);
     assert_eq!(filled(GapMethod::Nearest)[3], 100.0);
-    // Of two equally near knots, the higher one counts.
+    // If two knots are equally near, the one with the higher value is used.
     assert_eq!(filled(GapMethod::Nearest)[2], 100.0);
     // 100 (1/0.75^2) / (1/0.25^2 + 1/0.75^2) = 10
     approx::assert_abs_diff_eq!(filled(GapMethod::INVERSE_DISTANCE)[1], 10.0, epsilon = 1e-9);
@@ -78,8 +78,8 @@ rules: [IF {condition} THEN y IS low]
     assert!(read("x0 IS low").is_some());
 }
 
-/// The table of the paper's ten rules at the knots, without its corner, and the filled values: computed independently
-/// with numpy from the same definitions.
+/// Fills the map of the paper's ten rules, in which no rule covers one corner, and compares the result with values
+/// that were computed independently, with numpy, from the same definitions.
 #[test]
 fn the_papers_corner_has_the_independently_computed_values() {
     let model = crate::shipped::flagred_paper_rules();

@@ -149,7 +149,8 @@ impl Cuts<'_> {
         }
     }
 
-    /// Adds a cut where a function changes its sign, if it does. `is_line` states whether it is a straight line.
+    /// Adds a cut where a function changes its sign, if it does. `is_line` states whether the function is a straight
+    /// line.
     fn at_sign_change(&mut self, f: impl Fn(f64) -> f64, is_line: bool) {
         let (a, b) = self.between;
         let (fa, fb) = (f(a), f(b));
@@ -161,8 +162,8 @@ impl Cuts<'_> {
         }
     }
 
-    /// Works like `at_sign_change` for a function that may have an extremum in between, and therefore two sign changes.
-    /// `slope` returns its slope at `x`, given the width of the interval.
+    /// Works like `at_sign_change` for a function that may have an extremum inside the interval, and therefore two sign
+    /// changes. `slope` returns the slope of the function at `x`, given the width of the interval.
     fn at_sign_changes(&mut self, f: impl Fn(f64) -> f64, slope: impl Fn(f64, f64) -> f64) {
         let (a, b) = self.between;
         let (fa, fb) = (f(a), f(b));

@@ -34,8 +34,8 @@ const MAX_BOXES: usize = 400;
 /// curved terms; all other rule sets stay far below it.
 const MAX_STEPS: u64 = 20_000_000;
 
-/// The search for a bound ends when a value that occurs is this close to it, as a share of the interval of all values
-/// that occurred.
+/// The search for a bound ends when the distance between the bound and a value that occurs is at most this fraction
+/// of the width of the interval of all values that occurred.
 const CLOSE: f64 = 0.005;
 
 /// The distance by which both ends are moved outwards because of rounding, relative to the width of the output's range
@@ -163,8 +163,8 @@ struct EndSearch<'s> {
 struct InputBox {
     inputs: Vec<Interval>,
     known: OutputBounds,
-    /// The bound of the searched end in this part, as [`IntervalEnd::of`] returns it. The part with the largest value is
-    /// divided first.
+    /// The bound of this part at the end that is searched for, as [`IntervalEnd::of`] returns it. The part with the
+    /// largest value is divided first.
     urgency: f64,
     scores: Vec<f64>,
 }
@@ -342,7 +342,7 @@ impl Enclosure<'_> {
 }
 
 impl EndSearch<'_> {
-    /// Evaluates a point.
+    /// Evaluates a point, and extends the intervals of the values that occurred.
     fn point(&mut self, inputs: &[f64]) {
         let engine = self.enclosure.engine;
         engine.outcomes(&mut self.engine, inputs, &mut self.outcomes);

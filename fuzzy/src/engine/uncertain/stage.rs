@@ -15,11 +15,11 @@ use crate::model::{
 use crate::table::operators::{larger, smaller};
 use crate::table::{Action, AntecedentStep, Op};
 
-/// The relative width of the band around the least firing strength in which a rule may fire or not, because of
-/// rounding.
+/// The relative width of the band around the least firing strength in which rounding may decide whether a rule
+/// fires.
 const NEAR: f64 = 1e-3;
 
-/// The outputs of a stage.
+/// A stage that is evaluated with intervals as inputs.
 #[derive(Debug, Clone)]
 pub(super) struct RangedStage {
     /// The indices in the model of the outputs that the stage reads. Their values follow those of the inputs.
@@ -433,7 +433,7 @@ impl RangedOutput {
         }
     }
 
-    /// Returns the numbers of a term of a Takagi-Sugeno output.
+    /// Returns the range of the numbers that a term of a Takagi-Sugeno output yields for values in the given intervals.
     fn number(&self, function: &MembershipFunction, values: &[Interval]) -> Span {
         let value = |name: &str| {
             let index = self.names.iter().position(|known| known == name);

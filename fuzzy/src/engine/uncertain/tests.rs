@@ -136,7 +136,8 @@ operators: {and: product, or: maximum, implication: product, aggregation: sum}";
                 "{values:?} {inner:?}"
             );
         }
-        // Where no rule may fire, the vertices alone prove nothing.
+        // At heat 40 no rule about `share` fires, so `share` may be undefined although it has a value at other
+        // vertices.
         let undefined = engine.evaluate_interval(&[Interval::new(0.0, 40.0), 0.0.into()]);
         assert!(undefined.unwrap()[1].may_be_undefined);
     }

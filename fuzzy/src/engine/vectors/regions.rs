@@ -137,8 +137,8 @@ impl Numbers<'_> {
         })
     }
 
-    /// Returns the numbers of a firing strength; `None` if a plane cannot represent them. `next_is_there` is true if
-    /// the next firing strength is in the same region.
+    /// Returns the numbers of the closed form for a firing strength; `None` if a plane cannot represent them.
+    /// `next_is_there` states whether the next firing strength is in the same region.
     fn of(&self, strength: usize, next_is_there: bool) -> Option<[f64; 7]> {
         match self.form {
             ClosedForm::Partition | ClosedForm::ScaledPartition => {

@@ -105,7 +105,7 @@ pub(super) fn is_missing(
         {
             return Some("for a rule that always fires write `input IS any`".into());
         }
-        // In `x IS low OR high`, the name is a term of the input before it, or of another one.
+        // In `x IS low OR high`, the name is a term of the input in the previous condition, or of another input.
         let connective = before.split_whitespace().next_back().unwrap_or("");
         let of = owner(kind, name);
         return Some(match last_input(before) {

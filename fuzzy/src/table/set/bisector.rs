@@ -50,7 +50,7 @@ impl SetArrays<'_> {
         self.sections.last().map(|section| section.to)
     }
 
-    /// Returns the value up to which a part has a given area.
+    /// Returns the position in a part up to which the part, from its lower end, has the given area.
     fn where_area_is(&self, part: &SetSegment<'_>, area: f64) -> f64 {
         let units = area / part.degree;
         let Some(flank) = part.flank else {
@@ -70,7 +70,7 @@ impl SetArrays<'_> {
         self.newton((part.from, part.to), rest, |x| flank.degree(x))
     }
 
-    /// Returns the root of a rising function, given its derivative in units of length.
+    /// Returns the root of a rising function, given its derivative per unit of length.
     fn newton(
         &self,
         (from, to): (f64, f64),

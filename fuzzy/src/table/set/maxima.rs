@@ -7,8 +7,8 @@ use crate::table::operators::{larger, smaller};
 impl SetArrays<'_> {
     /// Returns the smallest, the mean or the largest value at which the aggregated maximum is highest.
     pub(super) fn maxima(&self, which: OfMaxima, strengths: &[f64]) -> Option<f64> {
-        // The degree of the term, before cutting or scaling, from which a value counts as highest. A strength that
-        // equals the maximum degree of the term up to rounding does not cut the term.
+        // The degree that the term must reach, before cutting or scaling, for a value to count as highest. A
+        // strength that equals the maximum degree of the term up to rounding does not cut the term.
         let level = |term: &SetTerm, strength: f64| {
             if self.scales || strength >= term.highest * (1.0 - TIE) {
                 term.highest

@@ -23,8 +23,8 @@ const CALL_S: f64 = 0.03;
 /// The length of a bin of commands, in seconds.
 const BIN_S: f64 = 0.1;
 
-/// The source of a window's values. Values of one source are known at the same times, so their statistics share the
-/// weights of a window.
+/// The source of a window's values. Values from the same source become known at the same times, so their statistics
+/// share the weights of a window.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Source {
     Motors,
@@ -165,7 +165,7 @@ pub(super) fn fill(
         if let Some(ratio) = of.ratio {
             let made = quotient(&value, &ratio);
             script.read.push(match of.if_missing {
-                // An assumed value is that of the ratio itself, not of its numerator.
+                // An assumed value is a value of the ratio itself, so it is not divided.
                 Some(_) => format!("  if has_come[{}] then\n  {made}\n  end", input + 1),
                 None => made,
             });

@@ -36,7 +36,7 @@ pub(super) struct Size {
 }
 
 impl Size {
-    /// Adds the code of a part.
+    /// Adds the size of the code of a part.
     pub(super) fn add_code(&mut self, part: &str) {
         let code = part
             .lines()

@@ -13,7 +13,8 @@ pub(super) struct Coefficients {
 }
 
 impl Coefficients {
-    /// Adds an output of a table, whose strengths begin at `first`. Returns the number of its strengths.
+    /// Adds an output of a table, whose firing strengths begin at the index `first`. Returns the number of its firing
+    /// strengths.
     pub(super) fn add(
         &mut self,
         table: &Table<'_>,

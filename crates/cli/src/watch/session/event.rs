@@ -11,7 +11,7 @@ use serde::{Serialize, Serializer};
 
 use super::{Source, UntrustedPacket};
 
-/// An event of a watch. Serialised, it is a line of `--jsonl` with the names of docs/json.md.
+/// An event of a watch. Serialised, it is a line of `--jsonl`; `docs/json.md` describes its fields.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 #[schemars(inline)]
 #[serde(tag = "event", rename_all = "snake_case")]
@@ -116,7 +116,7 @@ pub(crate) enum Event {
         before: Option<Level>,
         /// The text to the ground station, at most 50 characters.
         text: String,
-        /// The code of the finding behind the level: a stable word for programs.
+        /// The code of the finding behind the level: a stable identifier for use by programs.
         code: Option<String>,
         /// What to do.
         advice: Option<String>,

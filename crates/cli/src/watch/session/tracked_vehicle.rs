@@ -42,7 +42,8 @@ pub(super) struct TrackedVehicle {
     pub(super) set_up_tried: bool,
     /// The reason why the motors cannot be assessed, if there is one.
     pub(super) refused: Option<Reason>,
-    /// The flight so far: parameters that arrive later may change motors or limits.
+    /// The samples of the flight so far. Parameters that arrive later may change motors or limits, and then the flight
+    /// is assessed again.
     pub(super) history: History,
     slowed_reported_s: Option<f64>,
     pub(super) watch: Option<AssessedVehicle>,
@@ -138,7 +139,8 @@ impl TrackedVehicle {
         (self.telemetry.version(), self.telemetry.system())
     }
 
-    /// Counts packets that are missing according to the autopilot's sequence numbers; a late packet was counted as missing.
+    /// Counts packets that are missing according to the autopilot's sequence numbers. A packet that arrives late is
+    /// removed from the count.
     pub(super) fn count(&mut self, packet: &Packet<'_>) {
         if packet.component != 1 {
             return;

@@ -13,18 +13,18 @@ const GONE_S: f64 = 5.0;
 const TELL_S: f64 = 5.0;
 /// Number of sent packets that are stored, to recognise those that a link returns.
 const ECHOES: usize = 16;
-/// Seconds within which PX4 repeats the latest value that it received as its own.
+/// Seconds within which PX4 may repeat, as if it were its own, the latest value that it received.
 const ECHO_S: f64 = 5.0;
 /// Maximum number of stored values, to recognise those that PX4 repeats.
 const VALUES: usize = 32;
-/// Delay in seconds of a text that another watch should send.
+/// Seconds to wait for another watch to send a text before this watch sends it.
 const TEXT_WAIT_S: f64 = 1.0;
 /// A text is not sent if another watch sent one on the same topic within this many seconds before.
 const TEXT_HEARD_S: f64 = 2.0;
-/// Maximum number of delayed texts, and of texts received from others.
+/// Maximum number of delayed texts, and of texts received from other watches.
 const TEXTS: usize = 8;
 
-/// The watch as a sender.
+/// Sends the messages of the watch to the vehicle's system, and gives way to other watches.
 pub(super) struct WatchSender {
     /// `None` if the watch only listens.
     sender: Option<Sender>,
@@ -34,15 +34,15 @@ pub(super) struct WatchSender {
     reported: Option<(f64, bool)>,
     has_reported_risk: bool,
     sent: VecDeque<Vec<u8>>,
-    /// The bits of each recent FR_RISK of this watch or another one, with the time.
+    /// The time and the bits of each recent FR_RISK value, sent by this watch or another one.
     values: VecDeque<(f64, u32)>,
     /// Texts that are sent unless the other watch sends them first.
     waiting: VecDeque<DelayedText>,
-    /// The topics of recent texts of others, with the time.
+    /// The time and the topic of each recent text of another watch.
     received: VecDeque<(f64, String)>,
 }
 
-/// A delayed text, which another watch should send.
+/// A delayed text; this watch sends it if no other watch does.
 struct DelayedText {
     due_s: f64,
     topic: Option<String>,
@@ -157,9 +157,10 @@ impl WatchSender {
         self.values.push_front((now_s, value.to_bits()));
     }
 
-    /// Processes a packet of another watch of the vehicle. The watch that has been running longer has precedence. A program on
-    /// the autopilot itself also has precedence over this watch, as does a sender that reports no running time and was
-    /// received before this watch sent a risk. An autopilot that `echoes` repeats the values of others as its own.
+    /// Processes a packet of another watch of the vehicle. The watch that has been running longer has precedence. A
+    /// program on the autopilot itself always has precedence over this watch. A sender that reports no running time has
+    /// precedence if its first value arrived before this watch sent a risk. `echoes` is true for an autopilot that
+    /// repeats the values of others as its own.
     pub(super) fn take_message(
         &mut self,
         now_s: f64,
@@ -220,7 +221,7 @@ impl WatchSender {
         self.report(now_s, packet.system, out);
     }
 
-    /// Resumes sending if the other watch is gone, and sends the texts that it did not send.
+    /// Sends the delayed texts that are due, and resumes sending if the other watch is gone.
     pub(super) fn tick(&mut self, now_s: f64, system: u8, out: &mut SessionOutput) {
         // The texts are sorted by the time at which they are due.
         while (self.waiting.front()).is_some_and(|text| now_s >= text.due_s) {

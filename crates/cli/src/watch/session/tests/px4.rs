@@ -30,7 +30,7 @@ impl Bench<'_> {
         }));
     }
 
-    /// Flies at 25 Hz; `each` receives the packets that were sent since the sample before.
+    /// Flies at 25 Hz; `each` receives the packets that were sent since the previous sample.
     fn px4_fly(&mut self, from_s: f64, seconds: f64, pulses: [u16; 4]) {
         self.px4_fly_and(from_s, seconds, pulses, |_, _| {});
     }

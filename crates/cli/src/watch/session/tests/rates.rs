@@ -70,7 +70,7 @@ fn rates_are_requested_until_they_arrive_also_by_the_old_message() {
     bench.stream(18.0, 20.0, 25, 5);
     assert_eq!(asks(&bench), (new, old));
 
-    // A vehicle that refuses receives the older kind of request at once.
+    // A vehicle that refuses a request immediately receives the older kind of request instead.
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);
     bench.wait(1.2);
