@@ -28,7 +28,7 @@ fn estimator(name: &str) -> Estimator {
     }
 }
 
-/// The commands of motors that compensate gusts.
+/// The commands of motors that compensate for gusts.
 fn commands(i: u32) -> [f64; MOTORS] {
     let t_s = f64::from(i) * 0.02;
     let gust = (t_s * 1.3).sin().max(0.0) * 0.4;

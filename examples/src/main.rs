@@ -27,7 +27,7 @@ const STEADY: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/flights/steady.BIN");
 #[cfg(test)]
 mod tests {
     #[test]
-    fn a_steady_wind_is_no_risk() {
+    fn a_steady_wind_gives_no_finding() {
         let assessment = super::assess(super::STEADY).unwrap();
         assert_eq!(assessment.verdict.to_string(), "GOOD");
         assert!(assessment.findings.is_empty());

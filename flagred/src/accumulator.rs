@@ -70,7 +70,7 @@ impl Accumulator {
         self.last = None;
     }
 
-    /// Adds the risk at `t_s`, which applies to the `held_s` seconds before; returns the elevated risk in %.
+    /// Adds the risk at `t_s`, which applies to the preceding `held_s` seconds. Returns the elevated risk in %.
     pub(crate) fn push(
         &mut self,
         risks: &mut Window,

@@ -48,7 +48,7 @@ pub(crate) enum RuleQuery {
 }
 
 impl Propositions<'_> {
-    /// Returns the cause of a risk for given values of the inputs, in the order of the profile. `ask` finds the rule of
+    /// Returns the cause of a risk for given values of the inputs, in the order of the profile. `find_rule` finds the rule of
     /// an output. It passes the rule and the degrees of the literals to a function, which selects the proposition. If
     /// the proposition is about an output, the search continues with that output. The rule index in the cause counts
     /// the rules of all stages.
@@ -57,12 +57,16 @@ impl Propositions<'_> {
         inputs: &[f64],
         (mut output, risk_pct): (usize, f64),
         outputs: usize,
-        mut ask: impl FnMut(usize, RuleQuery, &dyn Fn(usize, &[f64]) -> Option<usize>) -> Option<usize>,
+        mut find_rule: impl FnMut(
+            usize,
+            RuleQuery,
+            &dyn Fn(usize, &[f64]) -> Option<usize>,
+        ) -> Option<usize>,
     ) -> Option<Cause> {
         let mut requested = RuleQuery::Raises(risk_pct);
         // A chain has no cycles, so it is at most this long.
         for _ in 0..outputs {
-            let proposition = ask(output, requested, &|rule, degrees| {
+            let proposition = find_rule(output, requested, &|rule, degrees| {
                 self.of_rule(rule, degrees)
             })?;
             let antecedent = self.all.get(proposition)?;

@@ -65,12 +65,12 @@ pub enum Statistic {
 
 impl Statistic {
     /// Whether the statistic is computed from means over 0.1 s instead of samples.
-    pub(crate) const fn is_of_bins(self) -> bool {
+    pub(crate) const fn uses_bins(self) -> bool {
         matches!(self, Statistic::StdLessNoise | Statistic::Noise)
     }
 
     /// Whether the statistic can be computed over an exponential window.
-    pub(crate) const fn is_of_weights(self) -> bool {
+    pub(crate) const fn supports_exponential(self) -> bool {
         matches!(
             self,
             Statistic::Mean
@@ -83,7 +83,7 @@ impl Statistic {
 
     /// Whether the statistic is computed from the means of slots instead of samples.
     #[cfg(feature = "std")]
-    pub(crate) const fn is_of_slots(self) -> bool {
+    pub(crate) const fn uses_slots(self) -> bool {
         matches!(self, Statistic::Rate | Statistic::Percentile(_))
     }
 }
@@ -287,7 +287,7 @@ pub struct Input {
     pub statistic: Statistic,
     /// The division by another input, if the input is a ratio.
     pub ratio: Option<Ratio>,
-    /// The value to assume until the signals are known for the first time, because a vehicle may never send them.
+    /// The value to assume until the signals are known for the first time, because a vehicle might never send them.
     pub if_missing: Option<f64>,
 }
 

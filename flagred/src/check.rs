@@ -21,12 +21,12 @@ use crate::{
     source::{Signal, Statistic, is_angle},
 };
 
-mod alone;
 mod reach;
+mod single_inputs;
 mod units;
 
-pub use alone::{OutvotedInput, alone};
 use reach::thresholds;
+pub use single_inputs::{InputRisk, risks_of_single_inputs};
 use units::{durations, elevated_shares, least_divisor, number_of_statistic, range};
 
 /// The minimum share of an input's range that the values of its signal must cover.
@@ -137,7 +137,9 @@ pub fn accepted(
     }
     let at = ValuePositions(tree);
     let (mut found, estimator) = examine(&read, rules, signals, &at);
-    let outvoted = estimator.iter().flat_map(|one| alone::outvoted(one, &at));
+    let outvoted = estimator
+        .iter()
+        .flat_map(|one| single_inputs::outvoted(one, &at));
     found.extend(outvoted);
     AcceptedFindings::remove(&read.allow, &mut found)
 }
@@ -170,7 +172,7 @@ pub fn outvoted(profile: &fuzzy::Source, estimator: &Estimator) -> Findings {
         return Findings::locate(Vec::new(), profile.text());
     };
     let at = ValuePositions(tree);
-    let mut found = alone::outvoted(estimator, &at);
+    let mut found = single_inputs::outvoted(estimator, &at);
     let (allow, spans) = allowed(&at, |finding| finding == OUTVOTED);
     let accepted = AcceptedFindings::remove(&allow, &mut found);
     found.extend(AcceptedFindings::unneeded(&accepted, &spans));

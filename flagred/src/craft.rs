@@ -10,9 +10,9 @@ pub struct Craft<'a> {
     pub motors: usize,
     /// The names of the signals of a sample other than motor commands, in order.
     pub signals: &'a [&'a str],
-    /// The subset of `signals` that the vehicle may never send. Until such a signal is known for
-    /// the first time, an input with [`if_missing`](crate::profile::ProfileInput::if_missing) has
-    /// that value.
+    /// The subset of `signals` that the vehicle might never send. Until such a signal is known for
+    /// the first time, an input takes the value of
+    /// [`if_missing`](crate::profile::ProfileInput::if_missing), if it has one.
     pub optional: &'a [&'a str],
     /// The factors of each motor, in the order of the samples; empty if the geometry is unknown.
     pub geometry: &'a [Factors],

@@ -125,7 +125,7 @@ struct Flight {
     /// The reasons why the risk was unknown, each with its total time in seconds.
     unknown: Vec<(Unknown, f64)>,
     losses: Losses,
-    /// The indices of the inputs whose values were assumed in the air.
+    /// The indices of the inputs whose values were assumed, not measured, while the vehicle was in the air.
     assumed: Vec<usize>,
     /// Judged risks that a landing would still withdraw, in order of time.
     pending: VecDeque<Pending>,
@@ -150,8 +150,8 @@ struct Pending {
 }
 
 impl Assessor {
-    /// Creates an assessor of a craft's flights, which keeps a step every `step_s` seconds, or no steps if that is
-    /// `None`.
+    /// Creates an assessor of a craft's flights. It keeps a step every `step_s` seconds; if `step_s` is `None`, it
+    /// keeps no steps.
     ///
     /// # Errors
     ///
@@ -193,8 +193,8 @@ impl Assessor {
             }
         } else {
             let profile = self.monitor.estimator().profile();
-            let elsewhere = self.monitor.unknown_elsewhere();
-            let unknown = update.risk.err().into_iter().chain(elsewhere);
+            let unknown_others = self.monitor.unknown_other_risks();
+            let unknown = update.risk.err().into_iter().chain(unknown_others);
             self.flight.add(&update, sample, profile, unknown);
             if !sample.is_on_ground() {
                 self.keep_step(&update);
@@ -216,8 +216,8 @@ impl Assessor {
 
     /// The finding behind the current level, with its values so far; `None` while the level is good.
     pub fn open_finding(&self) -> Option<Finding> {
-        if let Some(of_risk) = self.monitor.open_elsewhere() {
-            return Some(Finding::elsewhere(&of_risk, self.monitor.estimator()));
+        if let Some(of_risk) = self.monitor.open_other_risk() {
+            return Some(Finding::of_other_risk(&of_risk, self.monitor.estimator()));
         }
         let found = self.monitor.open_finding()?;
         Some(Finding::new(found, self.monitor.estimator()))
@@ -248,8 +248,8 @@ impl Assessor {
             let finding = Finding::new(found, self.monitor.estimator());
             self.flight.findings.push(finding);
         }
-        for of_risk in self.monitor.ended_elsewhere() {
-            let finding = Finding::elsewhere(of_risk, self.monitor.estimator());
+        for of_risk in self.monitor.ended_other_risks() {
+            let finding = Finding::of_other_risk(of_risk, self.monitor.estimator());
             self.flight.findings.push(finding);
         }
     }
@@ -258,7 +258,7 @@ impl Assessor {
     pub fn finish(&mut self) -> Assessment {
         self.end_findings();
         let mut flight = core::mem::replace(&mut self.flight, Flight::new());
-        flight.settle(f64::INFINITY);
+        flight.count_pending(f64::INFINITY);
         let known_in_air_s = self.known_in_air_s.take();
         self.ended_before = 0;
         flight.bound_risks(self.monitor.estimator());
@@ -440,7 +440,7 @@ impl Flight {
                 });
             }
         }
-        self.settle(t_s - quiet_s);
+        self.count_pending(t_s - quiet_s);
     }
 
     fn add_unknown(&mut self, reason: Unknown, flown_s: f64) {
@@ -470,17 +470,17 @@ impl Flight {
     /// Drops the least severe findings if there are too many.
     fn bound_findings(&mut self) {
         if self.findings.len() >= 2 * MAX_FINDINGS {
-            self.keep_gravest();
+            self.keep_worst();
         }
     }
 
-    fn keep_gravest(&mut self) {
-        let by_gravity = |a: &Finding, b: &Finding| {
+    fn keep_worst(&mut self) {
+        let by_severity = |a: &Finding, b: &Finding| {
             b.severity
                 .cmp(&a.severity)
                 .then(a.from_s.total_cmp(&b.from_s))
         };
-        self.findings.sort_by(by_gravity);
+        self.findings.sort_by(by_severity);
         let left_out = self.findings.len().saturating_sub(MAX_FINDINGS);
         self.findings.truncate(MAX_FINDINGS);
         self.findings_left_out += left_out as u64;
@@ -499,7 +499,7 @@ impl Flight {
     }
 
     /// Counts the pending risks up to the given time, which a landing can no longer withdraw.
-    fn settle(&mut self, until_s: f64) {
+    fn count_pending(&mut self, until_s: f64) {
         while let Some(risk) = self.pending.front().filter(|risk| risk.t_s <= until_s) {
             self.judged_s += risk.held_s;
             self.risk_times_s += risk.risk_times_s;
@@ -513,7 +513,7 @@ impl Flight {
 
     /// Handles a landing: the time after `from_s` is not judged.
     fn retract(&mut self, from_s: f64) {
-        self.settle(from_s);
+        self.count_pending(from_s);
         self.pending.clear();
         for step in self.steps.iter_mut().rev() {
             if step.t_s <= from_s {
@@ -541,7 +541,7 @@ impl Flight {
     }
 
     fn assessment(mut self, known_in_air_s: Option<f64>, profile: &Profile) -> Assessment {
-        self.keep_gravest();
+        self.keep_worst();
         let share = |part: f64, whole: f64| (whole > 0.0).then(|| part / whole);
         let summary = Summary {
             in_air_s: known_in_air_s.unwrap_or(self.summary.in_air_s),
@@ -572,12 +572,12 @@ impl Flight {
     fn verdict(&self, summary: &Summary, profile: &Profile) -> Verdict {
         let knows_enough =
             summary.assessed_s > 0.0 && summary.assessed_s >= KNOWN_SHARE * summary.in_air_s;
-        let gravest = self.findings.first().map(|finding| finding.severity);
+        let worst = self.findings.first().map(|finding| finding.severity);
         let lost = self
             .losses
             .reason(summary.in_air_s, profile.sampling.longest_gap_s);
-        match (gravest.filter(|level| *level > Level::Info), lost) {
-            (Some(gravest), _) => Verdict::Known(gravest),
+        match (worst.filter(|level| *level > Level::Info), lost) {
+            (Some(worst), _) => Verdict::Known(worst),
             (None, Some(lost)) => Verdict::NotAvailable(lost),
             (None, None) if knows_enough && summary.risk_max.is_none() => {
                 Verdict::NotAvailable(Reason::TooShort {

@@ -33,7 +33,7 @@ pub(crate) struct Follower {
     last_s: Option<f64>,
     in_air_since_s: Option<f64>,
     /// Whether the windows have discarded the take-off.
-    settled: bool,
+    has_discarded_take_off: bool,
     /// The time since which the vehicle seems to be on the ground, in seconds; the flight may continue within
     /// [`TOUCH_S`].
     down_since_s: Option<f64>,
@@ -48,7 +48,7 @@ pub(crate) struct Follower {
     last_known_s: Option<f64>,
     /// During and after an alarm, the last time at which it was not certain that the motors work as they did
     /// before the alarm, in seconds.
-    in_doubt_s: Option<f64>,
+    unrecovered_s: Option<f64>,
 }
 
 /// The time in seconds for which the land detector must report the ground, or the motors must idle, to count as a
@@ -133,14 +133,14 @@ impl Follower {
             settings,
             last_s: None,
             in_air_since_s: None,
-            settled: false,
+            has_discarded_take_off: false,
             down_since_s: None,
             idle: None,
             lifted_s: None,
             falls: false,
             last_high_s: None,
             last_known_s: None,
-            in_doubt_s: None,
+            unrecovered_s: None,
         }
     }
 
@@ -176,7 +176,7 @@ impl Follower {
             }
             Err(reason) => {
                 update.risk = Err(reason);
-                update.level = self.level_in_doubt();
+                update.level = self.level_while_unknown();
             }
         }
         update.change = update.level.filter(|level| *level != before);
@@ -203,7 +203,7 @@ impl Follower {
             Some(last_s) if !(0.0..=longest_gap_s).contains(&(t_s - last_s)) => {
                 let end = if t_s > last_s { End::Gap } else { End::Restart };
                 *ended = self.forget(last_s, end, room);
-                self.in_doubt_s = self.in_doubt_s.map(|_| t_s);
+                self.unrecovered_s = self.unrecovered_s.map(|_| t_s);
                 0.0
             }
             Some(last_s) => t_s - last_s,
@@ -223,7 +223,7 @@ impl Follower {
                 }
             } else {
                 // The landing was within a gap.
-                self.in_doubt_s = None;
+                self.unrecovered_s = None;
                 motor::forget_trims(room.motors);
             }
             return Err(Unknown::OnGround);
@@ -236,17 +236,17 @@ impl Follower {
             named: sample.signals,
         };
         push(feed.channels, room.seen, (t_s, held_s), &now);
-        self.settle(t_s, in_air_since_s, room);
+        self.discard_take_off(t_s, in_air_since_s, room);
         let unknown = unknown_motor(room.motors, sample.motors);
-        if self.settled && unknown.is_none() {
-            let is_calm = self.alert.level() == Level::Good && self.in_doubt_s.is_none();
+        if self.has_discarded_take_off && unknown.is_none() {
+            let is_calm = self.alert.level() == Level::Good && self.unrecovered_s.is_none();
             self.notices
                 .push((t_s, held_s), together.noise, room.motors, is_calm);
         }
         let unknown = unknown.filter(|_| feed.needs_motors());
-        let said = match self.estimate(feed, room, unknown, estimate) {
+        let estimate = match self.estimate(feed, room, unknown, estimate) {
             _ if self.falls => Estimate::FALL,
-            Ok(said) => said,
+            Ok(estimate) => estimate,
             Err(reason) => {
                 let known_s = self.last_known_s.unwrap_or(t_s);
                 if t_s - known_s > longest_gap_s {
@@ -261,29 +261,29 @@ impl Follower {
             .warn
             .raise
             .risk_pct
-            .is_some_and(|high| said.risk_pct >= high)
+            .is_some_and(|high| estimate.risk_pct >= high)
         {
             self.last_high_s = Some(t_s);
         }
-        let elevated = self.sum.push(room.risks, (t_s, held_s), said.risk_pct);
+        let elevated = self.sum.push(room.risks, (t_s, held_s), estimate.risk_pct);
         let takes_off = !self.falls && t_s - in_air_since_s < verdict.quiet_after_take_off_s;
         let now = verdict::Now {
             t_s,
-            risk_pct: said.risk_pct,
+            risk_pct: estimate.risk_pct,
             elevated_pct: elevated,
             takes_off,
             slow_down_together: !self.falls && self.notices.slow_down_together(),
             falls: self.falls,
         };
         let step = self.alert.push(now, room.motors);
-        self.doubt(t_s);
+        self.update_recovery(t_s);
         // This cannot replace a finding that ended because the state was reset: raising a level again takes a while, so no
         // second finding can end with the same sample.
         if step.ended.is_some() {
             ended[0] = step.ended;
         }
         Ok(Risk {
-            estimate: said,
+            estimate,
             elevated_pct: elevated,
             judged: !takes_off,
         })
@@ -316,9 +316,12 @@ impl Follower {
         if !self.alert.needs_cause() {
             return;
         }
-        let by_rules = update.risk.ok().filter(|said| said.filled_from.is_none());
+        let by_rules = update
+            .risk
+            .ok()
+            .filter(|estimate| estimate.filled_from.is_none());
         let by_rules = by_rules.filter(|_| !self.falls);
-        let cause = by_rules.and_then(|said| cause(said.risk_pct));
+        let cause = by_rules.and_then(|estimate| cause(estimate.risk_pct));
         self.alert.explain(cause, |motor| {
             cause
                 .is_some_and(|cause| is_of_limits((feed.channels, feed.inputs), cause.input, motor))
@@ -342,20 +345,20 @@ impl Follower {
     /// until the motors work as they did before.
     pub(crate) fn level(&self) -> Level {
         let noticed = self.notices.open().map_or(Level::Good, |f| f.severity);
-        let doubted = self.in_doubt_s.map_or(Level::Good, |_| Level::Warn);
-        self.alert.level().max(noticed).max(doubted)
+        let recovering = self.unrecovered_s.map_or(Level::Good, |_| Level::Warn);
+        self.alert.level().max(noticed).max(recovering)
     }
 
     /// After an alarm, keeps the level above GOOD until the motors have worked for `clear_after_s` as they did before
     /// the alarm.
-    fn doubt(&mut self, t_s: f64) {
+    fn update_recovery(&mut self, t_s: f64) {
         let is_alarm = self.alert.level() > Level::Good;
         let clear_after_s = self.settings.verdict.clear_after_s;
-        let was_in_doubt = |doubt_s: f64| t_s - doubt_s < clear_after_s - ROUNDING_S;
-        if (is_alarm || self.in_doubt_s.is_some()) && !self.notices.is_back() {
-            self.in_doubt_s = Some(t_s);
+        let is_recent = |then_s: f64| t_s - then_s < clear_after_s - ROUNDING_S;
+        if (is_alarm || self.unrecovered_s.is_some()) && !self.notices.has_recovered() {
+            self.unrecovered_s = Some(t_s);
         } else if !is_alarm {
-            self.in_doubt_s = self.in_doubt_s.filter(|doubt_s| was_in_doubt(*doubt_s));
+            self.unrecovered_s = self.unrecovered_s.filter(|then_s| is_recent(*then_s));
         }
     }
 
@@ -394,16 +397,16 @@ impl Follower {
     }
 
     /// Discards the take-off from the long windows and the elevated risk, once it has been over for `warm_up_s`.
-    fn settle(&mut self, t_s: f64, in_air_since_s: f64, room: &mut FlightMemory<'_>) {
+    fn discard_take_off(&mut self, t_s: f64, in_air_since_s: f64, room: &mut FlightMemory<'_>) {
         let Sampling {
             take_off_s,
             warm_up_s,
             ..
         } = self.settings.sampling;
-        if self.settled || t_s - in_air_since_s < take_off_s + warm_up_s {
+        if self.has_discarded_take_off || t_s - in_air_since_s < take_off_s + warm_up_s {
             return;
         }
-        self.settled = true;
+        self.has_discarded_take_off = true;
         if take_off_s > 0.0 {
             for seen in room.seen.iter_mut() {
                 seen.forget_before(in_air_since_s + take_off_s, take_off_s);
@@ -449,7 +452,7 @@ impl Follower {
 
     /// The level while the risk is unknown: the level of an ongoing alarm or of another open finding; `None` instead of
     /// GOOD.
-    fn level_in_doubt(&self) -> Option<Level> {
+    fn level_while_unknown(&self) -> Option<Level> {
         let level = match self.last_known_s {
             Some(_) if self.in_air_since_s.is_some() => Some(self.level()),
             _ => self.notices.open().map(|finding| finding.severity),
@@ -458,7 +461,7 @@ impl Follower {
     }
 
     /// Resets the state after a flight or a gap. After a gap in the air, the trims are kept, and so is the level if it
-    /// was above GOOD (see [`Self::doubt`]).
+    /// was above GOOD (see [`Self::update_recovery`]).
     fn forget(&mut self, t_s: f64, end: End, room: &mut FlightMemory<'_>) -> EndedFindings {
         for seen in room.seen.iter_mut() {
             seen.clear();
@@ -466,7 +469,7 @@ impl Follower {
         room.inputs.fill(f64::NAN);
         self.bin = Bin::NONE;
         self.in_air_since_s = None;
-        self.settled = false;
+        self.has_discarded_take_off = false;
         self.down_since_s = None;
         self.idle = None;
         if end != End::Landing {
@@ -480,7 +483,7 @@ impl Follower {
     }
 
     fn stop_judging(&mut self, t_s: f64, end: End, room: &mut FlightMemory<'_>) -> EndedFindings {
-        self.in_doubt_s = (end == End::Gap && self.level() > Level::Good).then_some(t_s);
+        self.unrecovered_s = (end == End::Gap && self.level() > Level::Good).then_some(t_s);
         self.sum.clear(room.risks);
         self.last_known_s = None;
         let step = self.alert.end(t_s, end == End::Landing);
@@ -519,8 +522,8 @@ pub(crate) fn reading(
 
 state! {
     struct Follower {
-        settings, sum, alert, notices, bin, last_s, in_air_since_s, settled, down_since_s, idle, lifted_s, falls, last_high_s,
-        last_known_s, in_doubt_s
+        settings, sum, alert, notices, bin, last_s, in_air_since_s, has_discarded_take_off, down_since_s, idle, lifted_s, falls, last_high_s,
+        last_known_s, unrecovered_s
     }
     struct Settings { sampling, elevated_risk, verdict }
 }

@@ -11,7 +11,8 @@ use crate::{
     verdict::Level,
 };
 
-/// Assesses a flight, using every motor sample. A step is kept every `step_s` seconds, or no steps if that is `None`.
+/// Assesses a flight, using every motor sample. A step is kept every `step_s` seconds; if `step_s` is `None`, no
+/// steps are kept.
 ///
 /// # Example: from a log to a verdict
 /// ```
@@ -86,7 +87,7 @@ fn assess_by(
     }
     let reads_motors = |input: usize| {
         let input = profile.inputs.get(input);
-        input.is_none_or(|input| input.source.signal.is_made_of_motors())
+        input.is_none_or(|input| input.source.signal.is_computed_from_commands())
     };
     let slow = gaps.iter().find(|gap| matches!(gap, Gap::TooSlow { .. }));
     if let (Verdict::NotAvailable(Reason::RiskUnknown { unknown, help, .. }), Some(slow)) =

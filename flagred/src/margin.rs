@@ -72,7 +72,7 @@ impl Range {
     }
 }
 
-/// The margin of an effective command in [0, 1]: `min(e, 1 - e)`, in [0, 0.5]; 0 is saturated at either limit.
+/// The margin of an effective command in [0, 1]: `min(e, 1 - e)`, in [0, 0.5]; 0 means saturated at either limit.
 ///
 /// # Example
 /// ```

@@ -126,7 +126,7 @@ pub struct Monitor {
     follower: Follower,
     /// The monitors of the other risks of the profile.
     others: Vec<Monitor>,
-    ended_elsewhere: Vec<RiskFinding>,
+    ended_other_risks: Vec<RiskFinding>,
     /// The reason why the risk of this monitor is unknown after the latest sample; the other risks are not considered.
     unknown: Option<Unknown>,
     /// The risk of this monitor after the latest sample in %; NaN is unknown.
@@ -210,7 +210,7 @@ impl Monitor {
         let others = others.map(|other| Monitor::new(other, craft));
         let others = others.collect::<Result<Vec<Monitor>, MonitorError>>()?;
         Ok(Monitor {
-            ended_elsewhere: Vec::with_capacity(others.len()),
+            ended_other_risks: Vec::with_capacity(others.len()),
             unknown: None,
             risk_pct: f64::NAN,
             others,
@@ -241,15 +241,15 @@ impl Monitor {
         }
         let before = self.level();
         let mut update = self.push_first(sample);
-        self.ended_elsewhere.clear();
+        self.ended_other_risks.clear();
         for (risk, other) in self.others.iter_mut().enumerate() {
             let of_other = other.push_first(sample);
             update.level = update.level.max(of_other.level);
             let [found, ..] = of_other.ended;
-            self.ended_elsewhere
+            self.ended_other_risks
                 .extend(found.map(|found| RiskFinding { risk, found }));
         }
-        if update.risk.is_err() || self.unknown_elsewhere().next().is_some() {
+        if update.risk.is_err() || self.unknown_other_risks().next().is_some() {
             update.level = update.level.filter(|level| *level > Level::Good);
         }
         update.change = update.level.filter(|level| *level != before);
@@ -345,12 +345,12 @@ impl Monitor {
 
     /// The finding behind the current level, with its values so far; `None` while the level is good.
     pub fn open_finding(&self) -> Option<Finding> {
-        let elsewhere = self.open_elsewhere().map(|of_risk| of_risk.found);
-        elsewhere.or_else(|| self.follower.open_finding())
+        let other = self.open_other_risk().map(|of_risk| of_risk.found);
+        other.or_else(|| self.follower.open_finding())
     }
 
     /// The finding behind the current level, if the finding is about another risk.
-    pub fn open_elsewhere(&self) -> Option<RiskFinding> {
+    pub fn open_other_risk(&self) -> Option<RiskFinding> {
         let first = self.follower.open_finding().map(|found| found.severity);
         let others = self.others.iter().enumerate();
         let open = others.filter_map(|(risk, other)| {
@@ -368,12 +368,12 @@ impl Monitor {
     }
 
     /// The findings of other risks that ended with the latest sample, or with [`Monitor::finish`].
-    pub fn ended_elsewhere(&self) -> &[RiskFinding] {
-        &self.ended_elsewhere
+    pub fn ended_other_risks(&self) -> &[RiskFinding] {
+        &self.ended_other_risks
     }
 
     /// The reasons why other risks are unknown after the latest sample, one for each unknown risk.
-    pub fn unknown_elsewhere(&self) -> impl Iterator<Item = Unknown> + Clone {
+    pub fn unknown_other_risks(&self) -> impl Iterator<Item = Unknown> + Clone {
         self.others.iter().filter_map(|other| other.unknown)
     }
 
@@ -390,10 +390,10 @@ impl Monitor {
 
     /// Ends the flight and returns the findings that were still open. A second call returns none.
     pub fn finish(&mut self) -> EndedFindings {
-        self.ended_elsewhere.clear();
+        self.ended_other_risks.clear();
         for (risk, other) in self.others.iter_mut().enumerate() {
             let [found, ..] = other.follower.finish(&mut other.room.borrowed());
-            self.ended_elsewhere
+            self.ended_other_risks
                 .extend(found.map(|found| RiskFinding { risk, found }));
         }
         self.follower.finish(&mut self.room.borrowed())
@@ -413,7 +413,7 @@ impl Monitor {
         self.follower.save(to);
         self.unknown.save(to);
         self.risk_pct.save(to);
-        self.ended_elsewhere.save(to);
+        self.ended_other_risks.save(to);
         self.others.iter().for_each(|other| other.save(to));
     }
 
@@ -428,8 +428,9 @@ impl Monitor {
         self.follower = Follower::load(from)?;
         self.unknown = State::load(from)?;
         self.risk_pct = State::load(from)?;
-        self.ended_elsewhere.clear();
-        self.ended_elsewhere.extend(Vec::<RiskFinding>::load(from)?);
+        self.ended_other_risks.clear();
+        self.ended_other_risks
+            .extend(Vec::<RiskFinding>::load(from)?);
         self.others
             .iter_mut()
             .try_for_each(|other| other.load(from))

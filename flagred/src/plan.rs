@@ -92,7 +92,9 @@ pub(crate) fn rules_for(
 ) -> Result<Rules<'_>, PlanError> {
     let (chain, table) = (engine.chain(), engine.table());
     let open = match (chain, table) {
-        (Some(chain), _) => outputs.find_map(|output| chain.open(output).next()),
+        (Some(chain), _) => {
+            outputs.find_map(|output| chain.outputs_without_closed_form(output).next())
+        }
         (None, table) => outputs.find(|output| {
             let of = table.and_then(|table| table.outputs.get(*output));
             of.is_none_or(|of| of.form() == ClosedForm::Integrated)
@@ -102,7 +104,7 @@ pub(crate) fn rules_for(
         (None, Some(table)) => Ok(Rules {
             table,
             stages: chain.map_or(&[], |chain| chain.stages),
-            places: chain.map_or(&[], |chain| chain.places),
+            indices: chain.map_or(&[], |chain| chain.indices),
         }),
         (open, _) => {
             let index = open.unwrap_or_default();

@@ -120,7 +120,7 @@ impl Signal {
     }
 
     /// Whether the signal is computed from the commands of the motors.
-    pub fn is_made_of_motors(&self) -> bool {
+    pub fn is_computed_from_commands(&self) -> bool {
         self.carried().next().is_none()
     }
 
@@ -312,7 +312,7 @@ pub(crate) fn channels<'a>(
                 Statistic::ShareAbove(value) => Some(Threshold::Above(value)),
                 _ => None,
             },
-            in_bins: source.statistic.is_of_bins(),
+            in_bins: source.statistic.uses_bins(),
             window_s: source.window_s,
             exponential: source.exponential,
         };

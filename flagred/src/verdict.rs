@@ -309,7 +309,7 @@ pub struct MotorFinding {
     pub margin_min: f64,
 }
 
-/// Serialises an index as a number from 1.
+/// Serialises an index as a number that counts from 1.
 #[cfg(feature = "serde")]
 pub(crate) fn from_one<S: serde::Serializer>(
     index: &usize,

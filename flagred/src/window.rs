@@ -146,7 +146,7 @@ impl Window {
                 slot.moments.merge(moments);
             }
             _ => {
-                let at = self.place(self.len);
+                let at = self.ring_index(self.len);
                 self.slots[at] = Slot {
                     index,
                     start_s: t_s - held_s,
@@ -174,7 +174,7 @@ impl Window {
         while self.len > 0 && self.slots[self.oldest].end_s - t_s <= TIME_RESOLUTION_S {
             let left = self.slots[self.oldest].samples;
             self.samples = self.samples.saturating_sub(left);
-            self.oldest = self.place(1);
+            self.oldest = self.ring_index(1);
             self.len -= 1;
             if self.front > 0 {
                 self.front -= 1;
@@ -194,7 +194,7 @@ impl Window {
             .moments
             .scaled(self.inside_of_oldest());
         if self.front > 1 {
-            total.merge(&self.slots[self.place(1)].and_later);
+            total.merge(&self.slots[self.ring_index(1)].and_later);
         }
         total.merge(&self.back);
         total
@@ -223,20 +223,20 @@ impl Window {
         self.front = self.len - 1;
         let mut and_later = Moments::EMPTY;
         for i in (0..self.front).rev() {
-            let at = self.place(i);
+            let at = self.ring_index(i);
             and_later.merge(&self.slots[at].moments);
             self.slots[at].and_later = and_later;
         }
-        self.back = self.slots[self.place(self.front)].moments;
+        self.back = self.slots[self.ring_index(self.front)].moments;
     }
 
     fn newest(&mut self) -> Option<&mut Slot> {
-        let at = self.place(self.len.checked_sub(1)?);
+        let at = self.ring_index(self.len.checked_sub(1)?);
         self.slots.get_mut(at)
     }
 
     /// The index in the ring of the i-th oldest slot.
-    fn place(&self, i: usize) -> usize {
+    fn ring_index(&self, i: usize) -> usize {
         (self.oldest + i) % self.slots.len()
     }
 }
@@ -247,7 +247,7 @@ state! { struct Slot { index, start_s, end_s, samples, moments, and_later } }
 #[cfg(feature = "std")]
 impl crate::state::State for Window {
     fn save(&self, to: &mut alloc::vec::Vec<u8>) {
-        let slots = (0..self.len).map(|i| self.slots[self.place(i)]);
+        let slots = (0..self.len).map(|i| self.slots[self.ring_index(i)]);
         slots.collect::<alloc::vec::Vec<Slot>>().save(to);
         let counts = (self.samples, self.front);
         ((self.length_s, self.now_s), (counts, self.back)).save(to);

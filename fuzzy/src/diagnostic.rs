@@ -413,8 +413,8 @@ pub(crate) fn duplicate(
 
 /// Returns the candidates that a word may refer to: the equivalent of another program's word, or else the nearest
 /// candidate.
-pub(crate) fn meant<'a>(word: &str, candidates: &[&'a str]) -> Vec<&'a str> {
-    let mut meant = foreign::meant(word, candidates.iter().copied());
+pub(crate) fn likely_candidates<'a>(word: &str, candidates: &[&'a str]) -> Vec<&'a str> {
+    let mut meant = foreign::equivalents(word, candidates.iter().copied());
     if meant.is_empty() {
         meant.extend(nearest(word, candidates.iter().copied()));
     }
@@ -424,7 +424,7 @@ pub(crate) fn meant<'a>(word: &str, candidates: &[&'a str]) -> Vec<&'a str> {
 /// Returns ``did you mean `heat`?``, or else a list of the candidates: ``there are `heat` and `humidity` ``.
 pub fn suggest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
     let candidates: Vec<&str> = candidates.into_iter().collect();
-    let meant = meant(word, &candidates);
+    let meant = likely_candidates(word, &candidates);
     let bare = |name: &str| name.trim_matches(is_curly_quote) == word;
     match meant.as_slice() {
         [one] if *one != word && bare(one) => Some(format!(
@@ -504,7 +504,7 @@ mod tests {
     }
 
     #[test]
-    fn near_words_are_found_and_far_ones_are_not() {
+    fn similar_words_are_suggested_and_others_are_not() {
         for (word, meant) in [
             ("hihg", Some("high")),
             ("HIGH", Some("high")),

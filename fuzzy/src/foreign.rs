@@ -180,7 +180,10 @@ fn folded(word: &str) -> String {
 }
 
 /// Returns the candidates that are equivalent to another program's word.
-pub(crate) fn meant<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
+pub(crate) fn equivalents<'a>(
+    word: &str,
+    candidates: impl IntoIterator<Item = &'a str>,
+) -> Vec<&'a str> {
     let word = folded(word);
     let known = WORDS.iter().find(|(other, _)| *other == word);
     let meanings = known.map_or(&[][..], |(_, meanings)| meanings);
@@ -199,11 +202,11 @@ pub(crate) fn parameter<'a>(function: &str, key: &str, names: &[&'a str]) -> Opt
         .map(|(_, name)| *name);
     named(key)
         .or_else(|| named(of_letter?))
-        .or_else(|| meant(key, names.iter().copied()).first().copied())
+        .or_else(|| equivalents(key, names.iter().copied()).first().copied())
 }
 
 /// Returns a suggestion for a key whose information belongs elsewhere.
-pub(crate) fn elsewhere(key: &str) -> Option<&'static str> {
+pub(crate) fn belongs_elsewhere(key: &str) -> Option<&'static str> {
     let key = folded(key);
     let found = ELSEWHERE.iter().find(|(other, _)| *other == key);
     found.map(|(_, help)| *help)
@@ -226,9 +229,9 @@ mod tests {
     fn the_meaning_of_a_foreign_word_depends_on_its_position() {
         let or = ["maximum", "bounded_sum"];
         let and = ["minimum", "bounded_difference"];
-        assert_eq!(meant("Lukasiewicz", or), ["bounded_sum"]);
-        assert_eq!(meant("Lukasiewicz", and), ["bounded_difference"]);
-        assert_eq!(meant("BoundedSum", or), ["bounded_sum"]);
-        assert!(meant("trimf", or).is_empty());
+        assert_eq!(equivalents("Lukasiewicz", or), ["bounded_sum"]);
+        assert_eq!(equivalents("Lukasiewicz", and), ["bounded_difference"]);
+        assert_eq!(equivalents("BoundedSum", or), ["bounded_sum"]);
+        assert!(equivalents("trimf", or).is_empty());
     }
 }

@@ -10,9 +10,9 @@ mod exponential;
 #[cfg(feature = "alloc")]
 mod form;
 mod formula;
+mod inverse;
 #[cfg(feature = "alloc")]
 mod outline;
-mod place;
 #[cfg(feature = "alloc")]
 mod slope;
 mod smooth;

@@ -10,7 +10,7 @@ use crate::{
     diagnostic::{Diagnostic, Findings, duplicate},
     model::{
         MembershipFunction, Model, Term, Variable,
-        chain::circles,
+        chain::cycle_errors,
         document::{Document, RuleSpans, Spans, VariableSpans},
     },
 };
@@ -156,7 +156,7 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
     }
     validator.blocks(spans);
     validator.interval_outputs(spans);
-    validator.findings.extend(circles(model, spans));
+    validator.findings.extend(cycle_errors(model, spans));
     let mut findings = validator.findings;
     findings.retain(|finding| finding.code != "unknown-variable" || !spans.names_unread);
     findings

@@ -300,7 +300,7 @@ fn a_bad_entry_of_a_list_is_named() {
 }
 
 #[test]
-fn mappings_that_were_sorted_are_read_as_before() {
+fn sorted_mappings_of_earlier_versions_are_still_read() {
     // In the format of earlier versions, a partition is a mapping, and its terms are sorted by their peaks.
     let mut text = UNSORTED.replace("{none: 1, much: 9}", "{much: 9, none: 1}");
     let document = yaml::parse(&text).unwrap();

@@ -193,7 +193,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
                 knots: &[],
             },
             stages: &[],
-            places: &[],
+            indices: &[],
         },
         output: 0,
         order: &[0, 1, 2],

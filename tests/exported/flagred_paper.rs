@@ -69,7 +69,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             table: Table {
                 and: Conjunction::Minimum,
                 or: Disjunction::Maximum,
-                conjunctions: Conjunctions::Uniform { actions_a_cell: 1, first_action: 0, sums: false },
+                conjunctions: Conjunctions::Uniform { actions_per_cell: 1, first_action: 0, sums: false },
                 least_strength: 1e-12,
                 sizes: Sizes { degrees: 0, alive: 4, partial: 4, stack: 0, strengths: 8 },
                 inputs: &[
@@ -144,7 +144,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
                 knots: &[],
             },
             stages: &[],
-            places: &[],
+            indices: &[],
         },
         output: 0,
         order: &[0, 1],

@@ -197,7 +197,7 @@ fn print(rows: &[Row], risks_pct: &[f64], out: &mut impl Write) -> Result<()> {
     for excess in &FALSE_ALARM_SETS {
         let of = rows.iter().zip(risks_pct);
         let risks: Vec<f64> = of
-            .filter(|(row, _)| (excess.holds)(row))
+            .filter(|(row, _)| (excess.contains)(row))
             .map(|(_, risk)| *risk)
             .collect();
         let above = risks.iter().filter(|risk| **risk > excess.above_pct);

@@ -223,9 +223,9 @@ pub fn points(estimator: &Estimator, along: usize) -> Vec<Vec<f64>> {
 }
 
 /// An update as text, bit for bit, in the format of `tests/c/follow.c`.
-pub fn reported(said: &Update) -> String {
+pub fn reported(update: &Update) -> String {
     use flagred::sample::Unknown;
-    let (unknown, input) = match said.risk {
+    let (unknown, input) = match update.risk {
         Ok(_) => (0, -1),
         Err(Unknown::OnGround) => (1, -1),
         Err(Unknown::OutOfOrder) => (2, -1),
@@ -237,24 +237,25 @@ pub fn reported(said: &Update) -> String {
         Err(Unknown::CommandOutside { .. }) => (8, -1),
     };
     let level = |level: Option<flagred::verdict::Level>| level.map_or(-1, |level| level as i32);
-    let mut text = moment(said.risk.ok().as_ref());
-    let elevated = bits(said.elevated_risk_pct.unwrap_or(f64::NAN));
-    let (now, change) = (level(said.level), level(said.change));
+    let mut text = moment(update.risk.ok().as_ref());
+    let elevated = bits(update.elevated_risk_pct.unwrap_or(f64::NAN));
+    let (now, change) = (level(update.level), level(update.change));
     let _ = write!(text, " {elevated} {now} {change} {unknown} {input}");
-    text + &findings(&said.ended)
+    text + &findings(&update.ended)
 }
 
 /// An estimate as text.
-pub fn moment(said: Option<&Estimate>) -> String {
-    let known = |value: fn(&Estimate) -> f64| bits(said.map_or(f64::NAN, value));
+pub fn moment(estimate: Option<&Estimate>) -> String {
+    let known = |value: fn(&Estimate) -> f64| bits(estimate.map_or(f64::NAN, value));
     format!(
         "{} {} {} {} {}",
         known(|said| said.risk_pct),
         known(|said| said.coverage),
         known(|said| said.filled_from.unwrap_or(f64::NAN)),
-        said.and_then(|said| said.dominant_rule)
+        estimate
+            .and_then(|said| said.dominant_rule)
             .map_or(-1, |rule| rule as i64),
-        i32::from(said.is_some_and(|said| said.clamped))
+        i32::from(estimate.is_some_and(|said| said.clamped))
     )
 }
 

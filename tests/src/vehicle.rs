@@ -5,7 +5,7 @@ mod answers;
 mod messages;
 mod received;
 
-use messages::{OUTPUTS_A_PORT, attitude, landed_state, servo_of_port};
+use messages::{OUTPUTS_PER_PORT, attitude, landed_state, servo_of_port};
 pub use messages::{heartbeat, heartbeat_of, servo};
 pub use received::{Inbox, Progress};
 
@@ -78,7 +78,7 @@ const TALK: usize = 1;
 const HALF_A_SAMPLE_S: f64 = 0.02;
 
 /// The time-out for any reaction of the other side: machines that run many tests are slow.
-const PATIENCE: Duration = Duration::from_secs(60);
+const TIMEOUT: Duration = Duration::from_secs(60);
 
 impl StandIn {
     /// A vehicle with the motors and limits of a flight.
@@ -123,7 +123,7 @@ impl StandIn {
             None => vehicle.requested,
         };
         while !is_met(self) {
-            assert!(start.elapsed() < PATIENCE, "the vehicle is not met");
+            assert!(start.elapsed() < TIMEOUT, "the vehicle is not met");
             self.beat(false, false);
             self.linger(Duration::from_millis(10));
         }
@@ -132,7 +132,7 @@ impl StandIn {
     /// Replays the part of a log between two times, and waits until the other side has processed it to the end.
     pub fn fly(&mut self, flight: &Flight, speed: Speed, from_s: f64, to_s: f64) {
         self.fly_on(flight, speed, from_s, to_s);
-        self.settle();
+        self.wait_until_processed();
     }
 
     /// Replays the part of a log between two times.
@@ -176,10 +176,10 @@ impl StandIn {
                 continue;
             }
             next_command_s = t_s + self.every.as_secs_f64() - HALF_A_SAMPLE_S;
-            let mut pulses = [[0; OUTPUTS_A_PORT]; 2];
+            let mut pulses = [[0; OUTPUTS_PER_PORT]; 2];
             for (&output, &raw) in outputs.iter().zip(row) {
                 let output = output + self.shift;
-                pulses[output / OUTPUTS_A_PORT][output % OUTPUTS_A_PORT] = raw as u16;
+                pulses[output / OUTPUTS_PER_PORT][output % OUTPUTS_PER_PORT] = raw as u16;
             }
             self.sent
                 .push(((clock_s * 1e3).round() as u32, Instant::now()));
@@ -205,7 +205,7 @@ impl StandIn {
 
     /// Sends a heartbeat of a marker vehicle and waits until the other side reports it. Packets stay in order, so the
     /// other side has then processed all packets of the flight.
-    pub fn settle(&mut self) {
+    pub fn wait_until_processed(&mut self) {
         let Some(progress) = self.progress.clone() else {
             self.linger(Duration::from_millis(200));
             return;
@@ -217,7 +217,7 @@ impl StandIn {
         self.wire.send(&packet);
         let start = Instant::now();
         while progress.other_system.load(Ordering::Acquire) != u64::from(system) {
-            assert!(start.elapsed() < PATIENCE, "the flight is not followed");
+            assert!(start.elapsed() < TIMEOUT, "the flight is not followed");
             self.linger(Duration::from_millis(2));
         }
         // The last messages are still on their way.
@@ -252,7 +252,7 @@ impl StandIn {
     /// Sends a heartbeat.
     pub fn beat(&mut self, armed: bool, in_air: bool) {
         let beat = heartbeat(self.kind, armed, in_air);
-        self.say(&beat);
+        self.send_outside_flight(&beat);
     }
 
     /// From now on, signs the packets of the vehicle and accepts only signed packets.
@@ -295,7 +295,7 @@ impl StandIn {
     }
 
     /// Sends a message that is not part of the flight; the link may lose it.
-    fn say(&mut self, message: &MavMessage) {
+    fn send_outside_flight(&mut self, message: &MavMessage) {
         let packet = self.sender.packet(self.version, self.system, message);
         if !self.chance(TALK, self.link.loss) {
             self.transmit(&packet);

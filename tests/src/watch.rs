@@ -216,9 +216,9 @@ pub fn fly_udp(
 }
 
 /// The share of samples with a reported risk, and the largest difference from the results of `assess`.
-pub fn compare(said: &WatchOutput, assessed: &Value) -> (f64, f64) {
+pub fn compare(output: &WatchOutput, assessed: &Value) -> (f64, f64) {
     let steps = assessed["steps"].as_array().unwrap();
-    let mut watched = said
+    let mut watched = output
         .all("risk")
         .filter_map(|event| Some((event["t_s"].as_f64()?, event["risk"].as_f64()?)));
     let (mut matched, mut known, mut largest) = (0, 0, 0.0_f64);
@@ -242,9 +242,9 @@ pub fn compare(said: &WatchOutput, assessed: &Value) -> (f64, f64) {
 }
 
 /// Checks that there is one text for each change of state, none on the ground, and all in the form that ground stations require.
-pub fn check_texts(said: &WatchOutput, received: &Inbox) {
+pub fn check_texts(output: &WatchOutput, received: &Inbox) {
     let texts = received.texts();
-    let levels: Vec<(String, u8)> = said
+    let levels: Vec<(String, u8)> = output
         .all("level")
         .map(|event| {
             let severity = match event["level"].as_str() {

@@ -107,7 +107,7 @@ fn every_package_depends_only_on_those_below_it() {
 /// The package `flagred` measures neither the ground truth nor how well a risk predicts it: both are unknown on board
 /// and in an assessment.
 #[test]
-fn the_method_does_not_measure_how_good_its_risks_are() {
+fn the_package_flagred_does_not_evaluate_its_own_risks() {
     const SUBJECTS: [&str; 6] = ["attitude", "baseline", "bootstrap", "learn", "roc", "upset"];
     for (name, text) in code("flagred/src") {
         for word in words(&text) {

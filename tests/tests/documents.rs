@@ -116,8 +116,8 @@ impl RepositoryCopy {
 }
 
 /// Whether the printed lines match the document, where `...` matches any lines.
-fn matches(said: &[&str], printed: &[&str]) -> bool {
-    match said {
+fn matches(output: &[&str], printed: &[&str]) -> bool {
+    match output {
         [] => printed.is_empty(),
         ["...", rest @ ..] => (0..=printed.len()).any(|skip| matches(rest, &printed[skip..])),
         [line, rest @ ..] => {

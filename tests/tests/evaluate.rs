@@ -56,7 +56,7 @@ fn flights_are_compared_step_by_step_and_episode_by_episode() {
     folder.file("a-calm.csv", flight("calm", false));
     folder.file("b-gusts.csv", flight("gusts", true));
     folder.file("c-manoeuvre.csv", flight("manoeuvre", true));
-    // A folder may contain other files than flights.
+    // A folder may contain files other than flights.
     folder.file("README.md", "Not a flight.\n");
     let output = evaluate(&["--json", folder.path().to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(0));

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use flagred::{
     estimator::Estimator,
     flight::Words,
-    profile::{Followed, Reliability},
+    profile::{ErrorFrequency, Reliability},
     shipped,
     verdict::Measure,
 };
@@ -118,14 +118,14 @@ fn the_reliability_is_near_that_of_rules_that_know_the_vehicles() {
             let counts = counts.iter().flat_map(|counts| &counts[bands.clone()]);
             let (moments, followed) =
                 counts.fold((0, 0), |sum, band| (sum.0 + band.0, sum.1 + band.1));
-            Followed { moments, followed }
+            ErrorFrequency { moments, followed }
         };
         let [sitl2, sitl3] = &simulated;
         for (left_out, known) in [
             (of_real.unwrap(), known(&[&real])),
             (of_simulated.unwrap(), known(&[sitl2, sitl3])),
         ] {
-            let pct = |of: Followed| 100.0 * of.followed as f64 / of.moments as f64;
+            let pct = |of: ErrorFrequency| 100.0 * of.followed as f64 / of.moments as f64;
             assert!(
                 (pct(left_out) - pct(known)).abs() < 10.0,
                 "{from_pct} to {to_pct} %: {left_out:?}, {known:?}"

@@ -27,9 +27,9 @@ fn read(csv: &str) -> Result<Flight, ReadError> {
 }
 
 #[track_caller]
-fn refused(csv: &str, said: &str, help: &str) {
+fn refused(csv: &str, message: &str, help: &str) {
     let error = read(csv).unwrap_err();
-    assert!(error.to_string().contains(said), "{error}");
+    assert!(error.to_string().contains(message), "{error}");
     assert!(error.help().unwrap().contains(help), "{:?}", error.help());
 }
 
@@ -294,7 +294,7 @@ fn a_clock_of_whole_numbers_is_named() {
 /// A damaged log may contain values that would be refused in a flight CSV written by a user. `convert` writes them, and
 /// its output is read back.
 #[test]
-fn files_of_convert_are_read_whatever_they_contain() {
+fn files_written_by_convert_are_read_with_any_content() {
     let rows = "t_s,pwm1,pwm2,pwm3,pwm4,in_air\n1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n\
                 1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n";
     let head = "# pwm_low_us: 1000\n# pwm_high_us: 2000\n";

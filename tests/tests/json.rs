@@ -66,7 +66,7 @@ fn every_object_of_a_schema_is_closed() {
 }
 
 #[test]
-fn assess() {
+fn documents_of_assess_match_their_schema() {
     let folder = Folder::new();
     let trouble = folder.file("trouble.csv", trouble());
     let ground = folder.file("ground.csv", "t_s,motor1,in_air\n0,0.1,0\n1,0.1,0\n");
@@ -86,7 +86,7 @@ fn assess() {
 }
 
 #[test]
-fn evaluate() {
+fn documents_of_evaluate_match_their_schema() {
     let folder = Folder::new();
     let trouble = folder.file("trouble.csv", trouble());
     let document = json(&["validate", "--json", STEADY, &trouble]);
@@ -96,7 +96,7 @@ fn evaluate() {
 }
 
 #[test]
-fn learn() {
+fn documents_of_learn_match_their_schema() {
     let folder = Folder::new();
     let rows = "margin,spread,risk\n0.1,0.1,50\n0.1,0.1,70\n0.3,0.2,10\n0.3,0.1,5\n";
     let (data, out) = (folder.file("data.csv", rows), folder.at("out.yaml"));
@@ -115,7 +115,7 @@ fn learn() {
 }
 
 #[test]
-fn identify() {
+fn documents_of_identify_match_their_schema() {
     let folder = Folder::new();
     let row = |i: i32| format!("{},{},car {i},{}\n", i % 7, i % 5, i % 7 * (i % 5));
     let rows: String = (0..70).map(row).collect();
@@ -141,7 +141,7 @@ fn identify() {
 }
 
 #[test]
-fn tune() {
+fn documents_of_tune_match_their_schema() {
     let folder = Folder::new();
     let rows = "margin,spread,risk\n0.1,0.1,50\n0.1,0.1,70\n0.3,0.2,10\n0.3,0.1,5\n";
     let (data, out) = (folder.file("data.csv", rows), folder.at("out.yaml"));
@@ -168,7 +168,7 @@ fn tune() {
 }
 
 #[test]
-fn simplify() {
+fn documents_of_simplify_match_their_schema() {
     let folder = Folder::new();
     let out = folder.at("out.yaml");
     let arguments = ["simplify", PAPER, "--output", &out, "--json", "--force"];
@@ -182,7 +182,7 @@ fn simplify() {
 }
 
 #[test]
-fn inspect() {
+fn documents_of_inspect_match_their_schema() {
     let folder = Folder::new();
     let ground = folder.file(
         "ground.csv",
@@ -194,7 +194,7 @@ fn inspect() {
 }
 
 #[test]
-fn explain_and_check() {
+fn documents_of_explain_and_check_match_their_schema() {
     valid(
         "explain",
         &json(&["explain", "--json", PAPER, "margin=0.1", "spread=0.05"]),
@@ -330,7 +330,7 @@ fn check_as_sarif() {
 }
 
 #[test]
-fn watch() {
+fn documents_of_watch_match_their_schema() {
     let folder = Folder::new();
     let flight = flight(folder.file("trouble.csv", trouble()).as_ref());
     let (said, _) = fly_udp(&flight, Link::default(), &[], Speed::Fastest);

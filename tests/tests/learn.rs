@@ -118,7 +118,7 @@ fn weights_whose_sums_overflow_are_refused_as_by_tune() {
 
 /// A profile may have an input `spread` that is not the spread of the motor commands in the summary.
 #[test]
-fn a_column_of_a_dataset_is_one_quantity_with_and_without_a_profile() {
+fn a_profile_does_not_change_the_meaning_of_dataset_columns() {
     let folder = Folder::new();
     let rules = "fuzzy: 1\nname: uneven\ninputs: {spread: {range: [0, 0.5], partition: {even: 0, uneven: 0.1}}}
 outputs: {risk: {range: [0, 100], partition: [low, high]}}

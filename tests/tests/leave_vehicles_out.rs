@@ -69,7 +69,7 @@ fn rules_hold_on_vehicles_they_were_not_tuned_on() {
         let of = rows
             .iter()
             .zip(&risks)
-            .filter(|(row, _)| (excess.holds)(row));
+            .filter(|(row, _)| (excess.contains)(row));
         let above: Vec<bool> = of.map(|(_, risk)| *risk > excess.above_pct).collect();
         let share = above.iter().filter(|is| **is).count() as f64 / above.len() as f64;
         println!(

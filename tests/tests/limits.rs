@@ -34,11 +34,11 @@ fn run(arguments: &[&str]) -> Output {
 }
 
 /// Asserts that a call ends with exit code 3 and prints `said` on standard error.
-fn refused(arguments: &[&str], said: &str) {
+fn refused(arguments: &[&str], message: &str) {
     let output = run(arguments);
     let reported = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(3), "{arguments:?}: {reported}");
-    assert!(reported.contains(said), "{arguments:?}: {reported}");
+    assert!(reported.contains(message), "{arguments:?}: {reported}");
 }
 
 #[test]

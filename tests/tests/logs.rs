@@ -88,7 +88,7 @@ fn has_times(log: &str) -> bool {
 
 /// Removes the single row that is in the air here but on the ground in the reference. The reference has no minimum
 /// duration of landings.
-fn leave_chatter_out(flight: &mut Flight, truth: &HashMap<String, Vec<Option<f64>>>) {
+fn remove_chatter(flight: &mut Flight, truth: &HashMap<String, Vec<Option<f64>>>) {
     let t_s = flight.commands.t_s().to_vec();
     let is_other = |row: &usize| {
         flight.is_in_air(t_s[*row]) == Some(true) && truth["in_air"][*row] == Some(0.0)
@@ -210,7 +210,7 @@ fn compare(folder: &Path, log: &str) {
         assert_eq!(flight.effective_range.high, 0.93);
         assert!((flight.full_range_statistics().unwrap().margin_min - 0.07).abs() < 1e-3);
         flight.effective_range.high = 1.0;
-        leave_chatter_out(&mut flight, &columns(&gunzip(&truth_of("motors.csv.gz"))));
+        remove_chatter(&mut flight, &columns(&gunzip(&truth_of("motors.csv.gz"))));
     }
     if let Some(low) = summary.get("effective_lo") {
         compare_range(log, &flight.effective_range, low, &summary["effective_hi"]);

@@ -43,10 +43,10 @@ impl Editor {
             requested: 0,
         };
         let able = json!({"general": {"positionEncodings": encodings}});
-        let answer = editor.ask("initialize", json!({"capabilities": able}));
+        let answer = editor.request("initialize", json!({"capabilities": able}));
         let known = &answer["capabilities"]["positionEncoding"];
         assert_eq!(known, encodings.first().copied().unwrap_or("utf-16"));
-        editor.tell("initialized", json!({}));
+        editor.notify("initialized", json!({}));
         editor
     }
 
@@ -57,7 +57,7 @@ impl Editor {
         self.to.flush().unwrap();
     }
 
-    fn tell(&mut self, method: &str, params: Value) {
+    fn notify(&mut self, method: &str, params: Value) {
         self.send(json!({"method": method, "params": params}));
     }
 
@@ -69,7 +69,7 @@ impl Editor {
         answer
     }
 
-    fn ask(&mut self, method: &str, params: Value) -> Value {
+    fn request(&mut self, method: &str, params: Value) -> Value {
         let answer = self.ask_raw(method, params);
         assert_eq!(answer["error"], Value::Null);
         answer["result"].clone()
@@ -97,7 +97,7 @@ impl Editor {
     /// Opens a text and returns the messages of its diagnostics.
     fn open(&mut self, uri: &str, text: &str) -> Vec<String> {
         let document = json!({"uri": uri, "languageId": "yaml", "version": 1, "text": text});
-        self.tell("textDocument/didOpen", json!({"textDocument": document}));
+        self.notify("textDocument/didOpen", json!({"textDocument": document}));
         self.found(uri)
     }
 
@@ -128,14 +128,14 @@ impl Editor {
         let line = before.matches('\n').count();
         let column = before.chars().rev().take_while(|c| *c != '\n').count();
         let at = place(uri, line, column);
-        let items = self.ask("textDocument/completion", at);
+        let items = self.request("textDocument/completion", at);
         let label = |item: &Value| item["label"].as_str().unwrap().to_owned();
         items.as_array().unwrap().iter().map(label).collect()
     }
 
     fn end(mut self) {
-        self.ask("shutdown", Value::Null);
-        self.tell("exit", Value::Null);
+        self.request("shutdown", Value::Null);
+        self.notify("exit", Value::Null);
         assert!(self.server.wait().unwrap().success());
     }
 }
@@ -160,11 +160,11 @@ fn mistakes_are_reported_while_typing() {
     let changes = json!([{"text": RULES.replace("IS slow", "IS slwo")}]);
     let document = json!({"uri": uri, "version": 2});
     let changed = json!({"textDocument": document, "contentChanges": changes});
-    editor.tell("textDocument/didChange", changed);
+    editor.notify("textDocument/didChange", changed);
     let found = editor.found(uri);
     assert!(found[0].starts_with("7:33 unknown-term"), "{found:?}");
     assert!(found[0].contains("did you mean `slow`?"), "{found:?}");
-    editor.tell(
+    editor.notify(
         "textDocument/didClose",
         json!({"textDocument": {"uri": uri}}),
     );
@@ -264,18 +264,18 @@ fn names_are_described_found_and_renamed() {
     let mut editor = Editor::new(&["utf-8"]);
     let uri = "file:///tmp/fan.yaml";
     editor.open(uri, RULES);
-    let hover = editor.ask("textDocument/hover", place(uri, 7, 33));
+    let hover = editor.request("textDocument/hover", place(uri, 7, 33));
     let text = hover["contents"]["value"].as_str().unwrap();
     assert_eq!(text, "**slow** of `speed` [0, 9]\n\n`triangle: [0, 2, 4]`");
-    let hover = editor.ask("textDocument/hover", place(uri, 7, 8));
+    let hover = editor.request("textDocument/hover", place(uri, 7, 8));
     let text = hover["contents"]["value"].as_str().unwrap();
     assert_eq!(text, "**heat** [0, 100] °C\n\nterms: `low`, `high`");
     assert_eq!(
-        editor.ask("textDocument/hover", place(uri, 0, 2)),
+        editor.request("textDocument/hover", place(uri, 0, 2)),
         Value::Null
     );
 
-    let there = editor.ask("textDocument/definition", place(uri, 8, 20));
+    let there = editor.request("textDocument/definition", place(uri, 8, 20));
     assert_eq!(there["range"]["start"], json!({"line": 3, "character": 49}));
 
     let rename = |to: &str| {
@@ -283,7 +283,7 @@ fn names_are_described_found_and_renamed() {
         requested["newName"] = to.into();
         requested
     };
-    let edits = editor.ask("textDocument/rename", rename("cold"));
+    let edits = editor.request("textDocument/rename", rename("cold"));
     let mut text = RULES.to_owned();
     let mut edits = edits["changes"][uri].as_array().unwrap().clone();
     edits.reverse();
@@ -334,7 +334,7 @@ fn the_layout_is_that_of_fmt() {
     editor.open(uri, &untidy);
     let options = json!({"tabSize": 2, "insertSpaces": true});
     let requested = json!({"textDocument": {"uri": uri}, "options": options});
-    let edits = editor.ask("textDocument/formatting", requested);
+    let edits = editor.request("textDocument/formatting", requested);
     editor.end();
     assert!(flagred().args(["fmt", &file]).status().unwrap().success());
     let formatted = std::fs::read_to_string(&file).unwrap();
@@ -377,7 +377,7 @@ fn a_rule_set_of_another_program_has_findings_and_is_not_formatted() {
     rename["newName"] = "cold".into();
     assert!(editor.ask_raw("textDocument/rename", rename)["error"].is_object());
     let options = json!({"tabSize": 2, "insertSpaces": true});
-    let formatted = editor.ask(
+    let formatted = editor.request(
         "textDocument/formatting",
         json!({"textDocument": {"uri": uri}, "options": options}),
     );
@@ -410,6 +410,6 @@ fn the_order_of_messages_is_that_of_the_protocol() {
     let mut editor = Editor::new(&[]);
     let again = editor.ask_raw("initialize", json!({"capabilities": {}}));
     assert_eq!(again["error"]["code"], -32600);
-    editor.tell("exit", Value::Null);
+    editor.notify("exit", Value::Null);
     assert_eq!(editor.server.wait().unwrap().code(), Some(1));
 }

@@ -301,7 +301,7 @@ fn a_weak_motor_is_the_one_above_its_trim_and_remains_reported() {
 }
 
 #[test]
-fn a_turn_and_a_lean_are_not_reported_as_a_weak_motor() {
+fn turning_and_leaning_are_not_reported_as_a_weak_motor() {
     let others: [(&[Factors], &[f64]); 4] = [
         // The vehicle turns.
         (&QUAD, &[0.2, 0.2, -0.2, -0.2]),

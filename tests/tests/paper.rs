@@ -18,7 +18,7 @@ fn membership(variable: &Variable, term: &str, x: f64) -> f64 {
 
 /// Row 0 of Table I, for which the paper prints the memberships and the degree of the learned rule.
 #[test]
-fn worked_example() {
+fn the_worked_example_of_the_paper_is_reproduced() {
     let model = paper();
     let [margin, spread] = model.inputs.as_slice() else {
         panic!("two inputs")
@@ -36,7 +36,7 @@ fn worked_example() {
 /// the maximum; exact centroid, no weights. Risk in %, rows by spread, columns by margin; computed independently of
 /// this project.
 #[test]
-fn decision_map() {
+fn the_decision_map_of_the_paper_is_reproduced() {
     const MARGIN: [f64; 9] = [0.0, 0.03, 0.05, 0.10, 0.15, 0.20, 0.25, 0.30, 0.50];
     const RISK: [(f64, [f64; 9]); 4] = [
         (0.05, [90.3, 67.1, 63.4, 50.0, 34.5, 22.0, 22.0, 9.7, 9.7]),

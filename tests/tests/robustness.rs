@@ -17,7 +17,7 @@ fn estimator() -> Estimator {
 
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn coarse_logs_wrong_limits_and_faults() {
+fn risk_on_coarse_logs_with_wrong_limits_and_faults() {
     let data = reference_data();
     let flights = simulated::flights(&data);
     let estimator = estimator();

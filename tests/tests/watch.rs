@@ -30,7 +30,7 @@ fn every_link_gives_the_verdict_of_assess(log: &Path) {
     let assessed = assess(log);
     for link in links() {
         let reported = fly_udp(&flight, link, &[], Speed::Fastest);
-        says_what_assess_says(
+        assert_agrees_with_assess(
             &reported,
             &assessed,
             &format!("{}, {link:?}", log.display()),
@@ -38,7 +38,7 @@ fn every_link_gives_the_verdict_of_assess(log: &Path) {
         );
     }
     let reported = fly_tcp(&flight, Speed::Fastest);
-    says_what_assess_says(
+    assert_agrees_with_assess(
         &reported,
         &assessed,
         &format!("{} over TCP", log.display()),
@@ -47,16 +47,16 @@ fn every_link_gives_the_verdict_of_assess(log: &Path) {
 }
 
 /// Asserts the same verdict, the same risk if no packet is lost, and one text for each change of state.
-fn says_what_assess_says(
-    (said, vehicle): &(WatchOutput, StandIn),
+fn assert_agrees_with_assess(
+    (output, vehicle): &(WatchOutput, StandIn),
     assessed: &Value,
     case: &str,
     link: Link,
 ) {
     let verdict = assessed["verdict"].as_str().unwrap();
-    assert_eq!(said.verdict(), verdict, "{case}");
-    assert_eq!(said.one("ready")["assumed"], json!([]), "{case}");
-    let (share, difference) = compare(said, assessed);
+    assert_eq!(output.verdict(), verdict, "{case}");
+    assert_eq!(output.one("ready")["assumed"], json!([]), "{case}");
+    let (share, difference) = compare(output, assessed);
     eprintln!(
         "{case}: {:.1} % of samples, difference {difference:.3}",
         100.0 * share
@@ -65,7 +65,7 @@ fn says_what_assess_says(
         assert!(share > 0.999, "{case}: {share}");
         assert!(difference <= 2.0, "{case}: {difference} points");
     }
-    check_texts(said, &vehicle.received);
+    check_texts(output, &vehicle.received);
     if verdict == "GOOD" {
         assert_eq!(vehicle.received.texts(), [], "{case}");
     }
@@ -74,7 +74,7 @@ fn says_what_assess_says(
         "GOOD" => 0,
         _ => 3,
     };
-    assert_eq!(said.code, Some(code), "{case}");
+    assert_eq!(output.code, Some(code), "{case}");
 }
 
 /// A watch with a TCP connection from a vehicle, in MAVLink 1.
@@ -148,7 +148,7 @@ fn reference_flights_get_the_verdict_of_assess_in_real_time() {
                 };
                 let case = format!("{}, {link:?}", log.display());
                 let link = link.unwrap_or_default();
-                says_what_assess_says(&reported, &assessed, &case, link);
+                assert_agrees_with_assess(&reported, &assessed, &case, link);
                 let values = reported.1.received.values("FR_RISK");
                 let rate_hz =
                     values.len() as f64 / assessed["summary"]["assessed_s"].as_f64().unwrap();
@@ -183,7 +183,7 @@ fn a_day_of_flights_takes_no_more_memory_than_an_hour() {
             hour_kb.get_or_insert_with(|| watch.resident_kb());
         }
     }
-    vehicle.settle();
+    vehicle.wait_until_processed();
     let (hour_kb, day_kb) = (hour_kb.unwrap(), watch.resident_kb());
     println!("{hour_kb} kB after an hour, {day_kb} kB after a day of {flights} flights");
     assert!(day_kb < hour_kb + 512, "{hour_kb} kB, {day_kb} kB");

@@ -12,13 +12,13 @@ use serde_json::Value;
 
 /// The recording gives `assess` the same results as `watch`, at the same times: a flight at full speed arrives in about a second,
 /// but both use the vehicle's clock.
-fn a_recording_gives_assess_what_watch_said(log: &Path) {
+fn assert_recording_agrees(log: &Path) {
     let flight = flight(log);
     let name = log.file_stem().unwrap().to_string_lossy().into_owned();
     let folder = Folder::new();
     let path = folder.path().join("flight.tlog");
     let file = path.to_str().unwrap();
-    let (said, _) = fly_udp(
+    let (output, _) = fly_udp(
         &flight,
         Link::default(),
         &["--record", file],
@@ -35,7 +35,7 @@ fn a_recording_gives_assess_what_watch_said(log: &Path) {
     assert_eq!(assessed["read"]["skipped_bytes"], 0);
     assert_eq!(
         assessed["verdict"].as_str(),
-        Some(said.verdict().as_str()),
+        Some(output.verdict().as_str()),
         "{name}"
     );
     let findings = |value: &Value| {
@@ -50,12 +50,12 @@ fn a_recording_gives_assess_what_watch_said(log: &Path) {
         .iter()
         .map(findings)
         .collect();
-    let mut of_watch: Vec<_> = said.all("finding").map(findings).collect();
+    let mut of_watch: Vec<_> = output.all("finding").map(findings).collect();
     of_log.sort();
     of_watch.sort();
     assert_eq!(of_log, of_watch, "{name}");
     // The risks at each time agree, too.
-    let (share, difference) = compare(&said, &assessed);
+    let (share, difference) = compare(&output, &assessed);
     assert!(
         share > 0.99 && difference < 0.1,
         "{name}: {share}, {difference}"
@@ -64,7 +64,7 @@ fn a_recording_gives_assess_what_watch_said(log: &Path) {
 
 #[test]
 fn assess_of_the_recorded_shipped_flight_agrees_with_watch() {
-    a_recording_gives_assess_what_watch_said(Path::new(STEADY));
+    assert_recording_agrees(Path::new(STEADY));
 }
 
 /// No parameter is requested: `watch` and `assess` assume the same limits, and report that.
@@ -94,5 +94,5 @@ fn assess_of_a_recording_without_parameters_agrees_with_watch() {
 #[ignore = "needs FLAGRED_SHARED"]
 fn assess_of_the_recorded_near_crash_agrees_with_watch() {
     let data = reference_data();
-    a_recording_gives_assess_what_watch_said(&data.join("flights/octoquad.BIN"));
+    assert_recording_agrees(&data.join("flights/octoquad.BIN"));
 }

@@ -79,9 +79,9 @@ impl Replay {
         let verdicts: Vec<&str> = over
             .map(|event| event["verdict"].as_str().unwrap())
             .collect();
-        let gravest = ["FAIL", "WARN", "GOOD", "NA"];
-        let gravest = gravest.iter().find(|verdict| verdicts.contains(verdict));
-        (*gravest.unwrap_or_else(|| panic!("no flight"))).to_owned()
+        let worst = ["FAIL", "WARN", "GOOD", "NA"];
+        let worst = worst.iter().find(|verdict| verdicts.contains(verdict));
+        (*worst.unwrap_or_else(|| panic!("no flight"))).to_owned()
     }
 }
 

@@ -165,7 +165,7 @@ fn garbage_and_extreme_values_are_counted_and_raise_no_alarm() {
 /// the width of each field on the wire (<https://mavlink.io/en/messages/common.html>).
 fn messages_read(t_us: u32) -> Vec<(u8, u8, Vec<u8>, Vec<usize>)> {
     let mut heartbeat = vec![0; 4];
-    // A quadrotor of ArduPilot, armed and active.
+    // An ArduPilot quadrotor, armed and active.
     heartbeat.extend([2, 3, 128, 4, 3]);
     let mut servo = t_us.to_le_bytes().to_vec();
     servo.extend([1500_u16; 8].iter().flat_map(|pulse| pulse.to_le_bytes()));

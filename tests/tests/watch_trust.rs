@@ -26,9 +26,9 @@ fn steady() -> (Flight, f64) {
 }
 
 /// Asserts that every line matches `flagred schema watch`.
-fn valid(said: &WatchOutput) {
+fn valid(output: &WatchOutput) {
     let schema = schema::schema("watch");
-    for line in &said.events {
+    for line in &output.events {
         assert_eq!(schema::errors(&schema, line), Vec::<String>::new());
     }
 }

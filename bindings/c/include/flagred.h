@@ -374,7 +374,7 @@ typedef struct flagred_proposition {
 /* A stage: rules that are evaluated together. There are several stages if outputs read other outputs. `ends` are the
  * ends of the stage's part of each array. */
 typedef struct flagred_stage {
-    uint32_t conjunctions, actions_a_cell, first_action, sums;
+    uint32_t conjunctions, actions_per_cell, first_action, sums;
     struct {
         uint32_t degrees, alive, partial, stack, strengths;
     } sizes;
@@ -425,7 +425,7 @@ typedef struct flagred_settings {
 struct flagred_rules {
     uint32_t format;
     uint32_t and_operator, or_operator;
-    uint32_t conjunctions, actions_a_cell, first_action, sums;
+    uint32_t conjunctions, actions_per_cell, first_action, sums;
     uint32_t degrees, alive, partial, stack, strengths;
     double least_strength;
     FLAGRED_ARRAY(flagred_input, inputs);
@@ -459,7 +459,7 @@ struct flagred_rules {
     FLAGRED_ARRAY(flagred_flank, flanks);
     FLAGRED_ARRAY(flagred_knot, knots);
     FLAGRED_ARRAY(flagred_stage, stages);
-    FLAGRED_ARRAY(uint32_t, places);            /* for each stage: the outputs that it reads, its outputs, its rules */
+    FLAGRED_ARRAY(uint32_t, indices);           /* for each stage: the outputs that it reads, its outputs, its rules */
 };
 
 struct flagred_plan {

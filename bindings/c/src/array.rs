@@ -28,8 +28,8 @@ impl<T> Array<T> {
         if bytes.is_none_or(|bytes| bytes > isize::MAX as usize) {
             return Err(Status::DamagedPlan);
         }
-        // SAFETY: the pointer is neither null nor unaligned, the size is possible, and the caller promises that the
-        // items are valid.
+        // SAFETY: the pointer is neither null nor unaligned, the size does not exceed `isize::MAX`, and the caller
+        // promises that the items are valid.
         Ok(unsafe { core::slice::from_raw_parts(self.items, self.count) })
     }
 }

@@ -103,7 +103,7 @@ unsafe fn start(
         return Err(Status::MemorySize);
     }
     rules.check().map_err(|_| Status::DamagedPlan)?;
-    let rules: &'static board::Rules<'static> = block.place(rules)?;
+    let rules: &'static board::Rules<'static> = block.store(rules)?;
     let outputs = rules.outputs();
     let memory = RuleMemory {
         numbers: block.fill(rules.numbers(), 0.0)?,
@@ -113,7 +113,7 @@ unsafe fn start(
         own: block.fill(outputs, table::Outcome::UNDEFINED)?,
     };
     let evaluator = Evaluator::new(rules, memory).ok_or(Status::DamagedPlan)?;
-    block.place(CEvaluator(evaluator)).map(core::ptr::from_mut)
+    block.store(CEvaluator(evaluator)).map(core::ptr::from_mut)
 }
 
 /// Evaluates one value for each input, and writes one outcome for each output.

@@ -143,7 +143,7 @@ unsafe fn start(
     }
     // SAFETY: the caller's promise about the plan's arrays.
     let plan = unsafe { plan.read(&mut block) }?;
-    let plan: &'static flagred::board::Plan<'static> = block.place(plan)?;
+    let plan: &'static flagred::board::Plan<'static> = block.store(plan)?;
     plan.check().map_err(|_| Status::DamagedPlan)?;
 
     let limits = Array {
@@ -164,7 +164,7 @@ unsafe fn start(
         outcomes: block.fill(sizes.outputs, Outcome::UNDEFINED)?,
         own: block.fill(sizes.outputs, Outcome::UNDEFINED)?,
         seen: block.repeat(sizes.channels, |_| Ok(ChannelState::IDLE))?,
-        risks: block.place(Window::IDLE)?,
+        risks: block.store(Window::IDLE)?,
         motors: block.fill(motors, Motor::UNKNOWN)?,
     };
     let monitor = CMonitor {
@@ -175,7 +175,7 @@ unsafe fn start(
         limits: ranges,
         effective: block.fill(motors, f64::NAN)?,
     };
-    block.place(monitor).map(core::ptr::from_mut)
+    block.store(monitor).map(core::ptr::from_mut)
 }
 
 /// Sets the factors of each motor.

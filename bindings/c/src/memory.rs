@@ -32,7 +32,7 @@ impl Block {
 
     /// Stores one value in the memory.
     #[allow(unsafe_code, reason = "foreign memory")]
-    pub(crate) fn place<T>(&mut self, value: T) -> Result<&'static mut T, Status> {
+    pub(crate) fn store<T>(&mut self, value: T) -> Result<&'static mut T, Status> {
         let pointer = self.reserve::<T>(1)?;
         // SAFETY: reserved for one value, which is written before its only reference is made.
         unsafe {

@@ -25,14 +25,14 @@ macro_rules! define {
             pub(crate) and: u32,
             pub(crate) or: u32,
             pub(crate) conjunctions: u32,
-            pub(crate) actions_a_cell: u32,
+            pub(crate) actions_per_cell: u32,
             pub(crate) first_action: u32,
             pub(crate) sums: u32,
             pub(crate) sizes: Sizes,
             pub(crate) least_strength: f64,
             $(pub(crate) $array: Array<define!(@item $item)>,)*
             pub(crate) stages: Array<Stage>,
-            pub(crate) places: Array<u32>,
+            pub(crate) indices: Array<u32>,
         }
 
         impl Rules {
@@ -55,7 +55,7 @@ macro_rules! define {
                             $($array: define!(@read $item self.$array),)*
                         },
                         stages: self.stages.read()?,
-                        places: self.places.read()?,
+                        indices: self.indices.read()?,
                     })
                 }
             }
@@ -74,7 +74,7 @@ impl Rules {
     fn conjunctions(&self) -> Result<Conjunctions, Status> {
         let code = [
             self.conjunctions,
-            self.actions_a_cell,
+            self.actions_per_cell,
             self.first_action,
             self.sums,
         ];

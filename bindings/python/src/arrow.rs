@@ -70,7 +70,7 @@ pub(crate) fn import(table: &Bound<'_, PyAny>) -> PyResult<ForeignTable> {
 }
 
 fn import_stream(capsule: &Bound<'_, PyAny>) -> PyResult<ForeignTable> {
-    let pointer = content(capsule, c"arrow_array_stream")?;
+    let pointer = capsule_pointer(capsule, c"arrow_array_stream")?;
     // SAFETY: a capsule of this name points to an ArrowArrayStream, which is moved out and marked as released.
     let mut stream = unsafe { FFI_ArrowArrayStream::from_raw(pointer.cast().as_ptr()) };
     let Some(get_schema) = stream.get_schema.filter(|_| stream.release.is_some()) else {
@@ -92,8 +92,8 @@ fn import_stream(capsule: &Bound<'_, PyAny>) -> PyResult<ForeignTable> {
 fn import_batch(capsules: &Bound<'_, PyAny>) -> PyResult<ForeignTable> {
     let pair: Result<(Bound<'_, PyAny>, Bound<'_, PyAny>), PyErr> = capsules.extract();
     let (schema, array) = pair.map_err(|_| mismatched("a pair of capsules"))?;
-    let schema = content(&schema, c"arrow_schema")?;
-    let array = content(&array, c"arrow_array")?;
+    let schema = capsule_pointer(&schema, c"arrow_schema")?;
+    let array = capsule_pointer(&array, c"arrow_array")?;
     // SAFETY: a capsule of this name points to an ArrowSchema, which lives as long as the capsule.
     let is_taken = unsafe { schema.cast::<SchemaLayout>().as_ref() }
         .release
@@ -150,7 +150,7 @@ impl ForeignTable {
 }
 
 /// Returns the pointer in a capsule with the given name.
-fn content(capsule: &Bound<'_, PyAny>, name: &CStr) -> PyResult<NonNull<c_void>> {
+fn capsule_pointer(capsule: &Bound<'_, PyAny>, name: &CStr) -> PyResult<NonNull<c_void>> {
     let wanted = || mismatched(&format!("a capsule `{}`", name.to_string_lossy()));
     let capsule = capsule.cast::<PyCapsule>().map_err(|_| wanted())?;
     capsule.pointer_checked(Some(name)).map_err(|_| wanted())
@@ -183,7 +183,7 @@ fn last_error(stream: &mut FFI_ArrowArrayStream, code: i32) -> String {
 struct PanicError;
 
 /// Runs a function that may panic, without a message on standard error: the caller reports its own error.
-fn unpanicked<T>(run: impl FnOnce() -> T) -> Result<T, PanicError> {
+fn catch_panic<T>(run: impl FnOnce() -> T) -> Result<T, PanicError> {
     thread_local! {
         static IS_SILENT: Cell<bool> = const { Cell::new(false) };
     }
@@ -204,7 +204,7 @@ fn unpanicked<T>(run: impl FnOnce() -> T) -> Result<T, PanicError> {
 
 /// The columns of a table.
 fn fields(schema: &FFI_ArrowSchema) -> PyResult<Fields> {
-    let read = unpanicked(|| DataType::try_from(schema));
+    let read = catch_panic(|| DataType::try_from(schema));
     match read {
         Ok(Ok(DataType::Struct(fields))) => Ok(fields),
         Ok(Ok(other)) => {
@@ -226,7 +226,7 @@ fn batch(array: FFI_ArrowArray, fields: &Fields) -> Result<StructArray, String> 
         return Err(broken());
     }
     let kind = DataType::Struct(fields.clone());
-    let read = unpanicked(|| {
+    let read = catch_panic(|| {
         // SAFETY: according to the protocol, the array matches the schema.
         unsafe { from_ffi_and_data_type(array, kind) }.map(StructArray::from)
     });

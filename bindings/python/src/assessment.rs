@@ -107,11 +107,11 @@ impl AssessmentData {
             return Ok(json_text.clone());
         }
         let (_, flight, assessed) = self.parts(py)?;
-        let teller = FindingContext {
+        let context = FindingContext {
             estimator: &self.loaded.estimator,
             motors: &flight.motors,
         };
-        Ok(json_text(assessed, teller))
+        Ok(json_text(assessed, context))
     }
 
     /// The time between two steps in seconds, if the caller chose it.
@@ -157,9 +157,9 @@ pub(crate) fn _page(title: &str, body: String) -> String {
 }
 
 /// Verdict, findings and summary, in JSON.
-pub(crate) fn json_text(assessed: &Assessment, teller: FindingContext<'_>) -> String {
+pub(crate) fn json_text(assessed: &Assessment, context: FindingContext<'_>) -> String {
     let findings = assessed.findings.iter();
-    let findings: Vec<_> = findings.map(|f| FindingDocument::new(f, teller)).collect();
+    let findings: Vec<_> = findings.map(|f| FindingDocument::new(f, context)).collect();
     json!({
         "verdict": assessed.verdict,
         "findings": findings,

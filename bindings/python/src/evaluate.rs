@@ -95,7 +95,7 @@ impl<'e> Evaluator<'e> {
             self.pool = Some(threads::pool(self.threads)?);
         }
         // A group of blocks takes about this long; Ctrl-C is checked after each group.
-        const LISTEN_EVERY: Duration = Duration::from_millis(50);
+        const CHECK_INTERVAL: Duration = Duration::from_millis(50);
         let (mut from, mut at_once) = (0, 16);
         while from < blocks.len() {
             let to = blocks.len().min(from + at_once);
@@ -105,7 +105,7 @@ impl<'e> Evaluator<'e> {
             py.detach(move || evaluator.group(columns, group))
                 .map_err(|error| data_error(error, None))?;
             py.check_signals()?;
-            if begun.elapsed() < LISTEN_EVERY {
+            if begun.elapsed() < CHECK_INTERVAL {
                 at_once *= 2;
             }
             from = to;

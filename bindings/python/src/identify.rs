@@ -118,7 +118,7 @@ pub(crate) fn _identify(
     Ok(IdentifyResult {
         model: yaml::to_string(&found.model),
         steps: steps
-            .map(|step| (step.input, step.terms, step.left_out))
+            .map(|step| (step.input, step.terms, step.cv_error))
             .collect(),
         without_rows: found.without_rows,
         validation: validation.map(|validation| IdentifyValidation {

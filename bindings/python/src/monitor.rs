@@ -86,7 +86,7 @@ impl MonitorData {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn teller(&self) -> FindingContext<'_> {
+    fn finding_context(&self) -> FindingContext<'_> {
         FindingContext {
             estimator: &self.loaded.estimator,
             motors: &[],
@@ -172,7 +172,7 @@ impl MonitorData {
             .map_or(&[][..], |state| state.assessor.ended());
         let ended: Vec<_> = ended
             .iter()
-            .map(|f| FindingDocument::new(f, self.teller()))
+            .map(|f| FindingDocument::new(f, self.finding_context()))
             .collect();
         json!(ended).to_string()
     }
@@ -200,7 +200,7 @@ impl MonitorData {
         };
         let assessed = state.assessor.finish();
         Ok(Some((
-            json_text(&assessed, self.teller()),
+            json_text(&assessed, self.finding_context()),
             steps(&assessed)?,
         )))
     }

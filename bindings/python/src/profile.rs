@@ -59,7 +59,7 @@ pub(crate) fn _built_in(name: &str) -> Option<&'static str> {
 }
 
 /// A loaded profile, or the error of loading it.
-fn usable(
+fn profile_or_error(
     py: Python<'_>,
     file: &str,
     loaded: Result<Loaded, LoadError<io::Error>>,
@@ -86,14 +86,14 @@ impl Profile {
     #[pyo3(signature = (name = "flagred"))]
     pub(crate) fn load(py: Python<'_>, name: &str) -> PyResult<Self> {
         let loaded = loaded::load(name, |path: &Path| fs::read_to_string(path));
-        usable(py, name, loaded)
+        profile_or_error(py, name, loaded)
     }
 
     /// Creates a profile from the pickled texts of the profile and of its rule set.
     #[staticmethod]
     fn _of_texts(py: Python<'_>, file: &str, profile: String, rules: String) -> PyResult<Self> {
         let [profile, rules] = [profile, rules].map(Source::new);
-        usable(py, file, loaded::with_rules(file, profile, rules))
+        profile_or_error(py, file, loaded::with_rules(file, profile, rules))
     }
 
     fn __reduce__<'py>(

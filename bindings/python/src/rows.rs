@@ -77,11 +77,11 @@ impl DerivationError {
 
 /// Returns the text of a rule set that was derived from another one, including the provenance step that created it.
 pub(crate) fn with_step(
-    begun_with: &str,
+    original_text: &str,
     model: &Model,
     step: ProvenanceStep,
 ) -> Result<String, DerivationError> {
-    provenance::rule_set(begun_with, model.clone(), step).map_err(DerivationError::Findings)
+    provenance::rule_set(original_text, model.clone(), step).map_err(DerivationError::Findings)
 }
 
 /// Returns the choice with the given name.

@@ -86,7 +86,7 @@ fn names(value: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
 }
 
 /// Evaluates the arguments of a Python call. Returns the values, or the outcomes if `with_reasons`.
-fn answer<'py>(
+fn evaluate_call<'py>(
     rule_set: &Bound<'py, RuleSet>,
     args: &Bound<'py, PyTuple>,
     named: Option<&Bound<'py, PyDict>>,
@@ -372,7 +372,7 @@ impl RuleSet {
         #[pyo3(from_py_with = count)] threads: Option<usize>,
         named: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        answer(slf, args, named, threads, false)
+        evaluate_call(slf, args, named, threads, false)
     }
 
     /// Evaluates the rule set and returns the values with their reasons.
@@ -402,7 +402,7 @@ impl RuleSet {
         #[pyo3(from_py_with = count)] threads: Option<usize>,
         named: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        answer(slf, args, named, threads, true)
+        evaluate_call(slf, args, named, threads, true)
     }
 
     /// Evaluates inputs of which only intervals are known.

@@ -83,7 +83,7 @@ pub(crate) fn interruptible<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> T + Send + 'static,
 ) -> PyResult<T> {
-    listening(py, work, Err)
+    run_interruptibly(py, work, Err)
 }
 
 /// Like [`interruptible`], for work that returns a result soon after `stop` is set. The first Ctrl-C sets it and waits for the
@@ -94,7 +94,7 @@ pub(crate) fn stoppable<T: Send + 'static>(
     work: impl FnOnce() -> T + Send + 'static,
 ) -> PyResult<(T, bool)> {
     let mut was_interrupted = false;
-    let result = listening(py, work, |error| {
+    let result = run_interruptibly(py, work, |error| {
         stop.store(true, Ordering::Relaxed);
         if was_interrupted || !error.is_instance_of::<PyKeyboardInterrupt>(py) {
             return Err(error);
@@ -105,21 +105,21 @@ pub(crate) fn stoppable<T: Send + 'static>(
     Ok((result, was_interrupted))
 }
 
-/// Runs work on another thread. `heard` receives exceptions from signals, and returns whether to continue waiting.
-fn listening<T: Send + 'static>(
+/// Runs work on another thread. `on_signal` receives exceptions from signals, and returns whether to continue waiting.
+fn run_interruptibly<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> T + Send + 'static,
-    mut received: impl FnMut(PyErr) -> PyResult<()>,
+    mut on_signal: impl FnMut(PyErr) -> PyResult<()>,
 ) -> PyResult<T> {
     /// The interval between checks for Ctrl-C, too short to be noticed as a delay.
-    const LISTEN_EVERY: Duration = Duration::from_millis(50);
+    const CHECK_INTERVAL: Duration = Duration::from_millis(50);
     let (sender, mut receiver) = mpsc::sync_channel(1);
     thread::spawn(move || sender.send(work()));
     loop {
         let receiver = &mut receiver;
-        match py.detach(move || receiver.recv_timeout(LISTEN_EVERY)) {
+        match py.detach(move || receiver.recv_timeout(CHECK_INTERVAL)) {
             Ok(done) => return Ok(done),
-            Err(mpsc::RecvTimeoutError::Timeout) => py.check_signals().or_else(&mut received)?,
+            Err(mpsc::RecvTimeoutError::Timeout) => py.check_signals().or_else(&mut on_signal)?,
             Err(mpsc::RecvTimeoutError::Disconnected) => {
                 return Err(PyRuntimeError::new_err(
                     "the calculation ended without a result",

@@ -33,7 +33,7 @@ export interface Errors {
   worst: { line: number; point: number[]; measured: number; computed: number }[];
 }
 
-/** A rule set made from rows. */
+/** A rule set that was learned from rows or tuned to them. */
 export interface Made {
   text: string;
   /** A sentence that describes the result. */

@@ -87,7 +87,7 @@ export interface SignalLabel {
 /** Returns the style sheet of {@link Assessment.part} and {@link Comparison.part}. */
 export const reportStyle = (): string => guarded(() => wasm.reportStyle());
 
-/** A profile with its rule set. It defines the inputs, and when to warn. */
+/** A profile with its rule set. It defines the inputs and the conditions for warnings. */
 export class Profile {
   /** @internal */
   constructor(readonly inner: wasm.Profile) {}
@@ -105,7 +105,7 @@ export class Profile {
     return new Profile(guarded(() => new wasm.Profile(name, undefined, rules)));
   }
 
-  /** Creates a profile from its text; findings call it `file`. */
+  /** Creates a profile from its text. `file` is its name in findings. */
   static fromText(file: string, text: string, rules?: string): Profile {
     return new Profile(guarded(() => new wasm.Profile(file, text, rules)));
   }
@@ -118,7 +118,7 @@ export class Profile {
     return guarded(() => this.inner.text);
   }
 
-  /** The warnings about the profile, displayed in its text. They do not prevent its use. */
+  /** The warnings about the profile, with the lines of its text that they refer to; empty if there are none. */
   get warnings(): string {
     return guarded(() => this.inner.warnings);
   }
@@ -155,8 +155,8 @@ export class Flight {
 
   /**
    * Reads a log from front to back, plain or gzipped, in pieces of a megabyte. `name` is its name in messages and
-   * reports. Of the signals that do not come from the motors, only those in `signals` are kept ({@link
-   * Profile.signals}), or all by default.
+   * reports. Signals other than motor commands are kept only if `signals` contains them ({@link Profile.signals}); by
+   * default, all are kept.
    */
   static read(name: string, read: Read, signals?: string[]): Flight {
     return new Flight(guarded(() => new wasm.Flight(name, read, signals)));

@@ -1,6 +1,6 @@
 /**
- * Thrown for a bug of flagred. The running work is lost, and the module must be loaded again in a new worker or a new
- * process.
+ * An error that is caused by a bug in flagred. The running work is lost, and the module must be loaded again in a new
+ * worker or a new process.
  */
 export class Panic extends Error {
   override name = 'Panic';

@@ -93,9 +93,9 @@ export interface DrawnVariable {
   terms: DrawnTerm[];
 }
 
-/** A term as a form shows it. */
+/** A term as shown in a form. */
 export interface TermFields {
-  /** Where its name is. */
+  /** The offset of its name. */
   at: number;
   /** Its shape, such as `triangle`; `peak` in a partition, and `limit` in `steps`. */
   shape: string;
@@ -111,11 +111,11 @@ export interface TermFields {
 
 /** The parts of a rule set that can be changed, renamed and removed. */
 export interface Parts {
-  /** The variables, inputs first; `at` is where the name is. */
+  /** The variables, inputs first; `at` is the offset of the name. */
   variables: { at: number; terms: TermFields[] }[];
   /** The texts of the rules. */
   rules: string[];
-  /** The shapes that a term can get. */
+  /** The shapes that a term can have. */
   shapes: string[];
 }
 
@@ -285,7 +285,7 @@ export interface View {
   axes: { input: number; low: number; high: number }[];
   /** The number of points along each axis. */
   points: number;
-  /** A value for each input; those of the axes are ignored. */
+  /** The fixed value of each input; the values of the axes are ignored. */
   held: number[];
 }
 
@@ -305,7 +305,7 @@ export interface Cells {
 
 /** All rules with the terms that they read and conclude. */
 export interface ViewedRules {
-  /** Whether a consequent is scaled by the firing strength, rather than cut. */
+  /** Whether consequents are scaled by the firing strength; otherwise they are cut off at it. */
   scales: boolean;
   rules: {
     /**
@@ -344,8 +344,8 @@ export class RuleSet {
   }
 
   /**
-   * Returns the value of an output, by its index or name, at a point; NaN if it has none. This is the fastest way,
-   * for loops; {@link RuleSet.evaluate} also returns the coverage and the dominant rule.
+   * Returns the value of an output at a point; NaN if it has none. The output is given by its index or its name. This is
+   * the fastest method, for use in loops; {@link RuleSet.evaluate} also returns the coverage and the dominant rule.
    */
   value(point: Point, output: number | string = 0): number {
     const index = typeof output === 'number' ? output : this.#outputs.indexOf(output);
@@ -362,7 +362,7 @@ export class RuleSet {
     return guarded(() => this.#set.value(index));
   }
 
-  /** Evaluates many rows: takes one column for each input and returns one for each output. NaN is unknown. */
+  /** Evaluates many rows, with one column for each input, and returns one column for each output. NaN is unknown. */
   evaluateColumns(columns: Columns): Float64Array[] {
     const given = inOrder<ArrayLike<Known>>(columns, this.#inputs);
     const rows = given[0]?.length ?? 0;
@@ -387,8 +387,8 @@ export class RuleSet {
   }
 
   /**
-   * Returns the degrees of the propositions of all rules at a point, rule by rule. NaN if a proposition reads an
-   * output.
+   * Returns the degrees of the propositions of all rules at a point, rule by rule. The degree is NaN if a proposition
+   * reads an output.
    */
   propositionDegrees(point: Point): Float64Array {
     const values = this.#numbers(point);
@@ -401,7 +401,10 @@ export class RuleSet {
     return parsed(() => this.#set.explain(values));
   }
 
-  /** Returns values for the inputs that are not axes; numbers in `fixed` are kept. */
+  /**
+   * Returns a value for each input, to be used as {@link View.held}. Numbers in `fixed` are kept; the other values are
+   * chosen so that the output varies over the axes.
+   */
   held(output: number, axes: number[], fixed: Known[]): number[] {
     const known = numbers(fixed, (i) => `value ${i + 1}`);
     return [...guarded(() => this.#set.held(output, Uint32Array.from(axes), known))];

@@ -1,6 +1,6 @@
 //! The JSON documents of `flagred check` and `flagred explain`.
 
-use flagred::check::OutvotedInput;
+use flagred::check::InputRisk;
 use fuzzy::{check, diagnostic::Diagnostic, engine, model::ProvenanceStep};
 use serde::Serialize;
 
@@ -38,8 +38,8 @@ pub struct CheckDocument<'a> {
     report: Option<&'a check::Report>,
     /// The highest risk that each input of a profile causes while all other inputs are calm; absent for a rule set.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schema", schemars(with = "[OutvotedInput]"))]
-    alone: Option<&'a [OutvotedInput]>,
+    #[cfg_attr(feature = "schema", schemars(with = "[InputRisk]"))]
+    alone: Option<&'a [InputRisk]>,
 }
 
 impl<'a> CheckDocument<'a> {
@@ -64,7 +64,7 @@ impl<'a> CheckDocument<'a> {
         file: &'a str,
         name: Option<&'a str>,
         findings: &'a [Diagnostic],
-        alone: &'a [OutvotedInput],
+        alone: &'a [InputRisk],
     ) -> CheckDocument<'a> {
         CheckDocument {
             schema: CHECK,

@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 
 use flagred::{
-    check::{OutvotedInput, alone, outvoted},
+    check::{InputRisk, outvoted, risks_of_single_inputs},
     estimator::Estimator,
     loaded::{self, is_profile},
     profile::Profile,
@@ -99,8 +99,10 @@ impl Document {
 
     /// The highest risk that each input of a profile causes while all other inputs are calm; empty for a rule set and for a
     /// profile with errors.
-    pub fn alone(&self) -> Vec<OutvotedInput> {
-        self.estimator().map(alone).unwrap_or_default()
+    pub fn risks_of_single_inputs(&self) -> Vec<InputRisk> {
+        self.estimator()
+            .map(risks_of_single_inputs)
+            .unwrap_or_default()
     }
 
     /// Whether the text is a profile.

@@ -18,7 +18,7 @@ use crate::{Edit, edited, layout::formatted, numbers, rewrite::head};
 /// # Errors
 /// If the text would not be read back as this rule set, for example because of a number that is not finite.
 pub fn rule_set(
-    begun_with: &str,
+    original_text: &str,
     mut model: Model,
     step: ProvenanceStep,
 ) -> Result<String, Findings> {
@@ -27,14 +27,14 @@ pub fn rule_set(
         ..step
     };
     model.provenance.push(step);
-    if let Some(text) = in_place(begun_with, &model) {
-        let was_formatted = formatted(begun_with).is_ok_and(|text| text == begun_with);
+    if let Some(text) = in_place(original_text, &model) {
+        let was_formatted = formatted(original_text).is_ok_and(|text| text == original_text);
         return Ok(match was_formatted {
             true => laid_out(text),
             false => text,
         });
     }
-    let text = laid_out(head(begun_with) + &fuzzy::yaml::to_string(&model));
+    let text = laid_out(head(original_text) + &fuzzy::yaml::to_string(&model));
     match fuzzy::yaml::parse(&text)?.model == model {
         true => Ok(text),
         false => {

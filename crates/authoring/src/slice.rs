@@ -53,10 +53,10 @@ pub fn cut(
 ) -> Result<Slice, EvaluateError> {
     let model = mapped.model;
     let is_axis = |input: usize| input == x || y.as_ref().is_some_and(|(y, _)| *y == input);
-    let held = model.inputs.iter().zip(&point).enumerate();
+    let values = model.inputs.iter().zip(&point).enumerate();
     let output = model.outputs.get(mapped.output).map(|o| &o.variable);
     let read = output.map_or(Vec::new(), |output| model.inputs_of(&output.name));
-    let held: Vec<(String, f64)> = held
+    let fixed: Vec<(String, f64)> = values
         .filter(|(input, (variable, _))| !is_axis(*input) && read.contains(&variable.name.as_str()))
         .map(|(_, (input, value))| (input.name.clone(), *value))
         .collect();
@@ -84,7 +84,7 @@ pub fn cut(
         range: output.map_or(Scale::new(0.0, 1.0), |o| Scale::new(o.low, o.high)),
         x: x_axis,
         y: y.map(|(_, axis)| axis),
-        held,
+        fixed,
         filling: mapped.filling.map(|(_, method)| method.replace('_', " ")),
         cells,
     })
@@ -139,7 +139,7 @@ pub fn shown(variable: &Variable) -> Scale {
 
 /// Chooses a value for each input: the fixed one, the middle of its range, or the peak of a term if the output then
 /// varies more over the two axes.
-pub fn held(
+pub fn fixed_values(
     mapped: &Mapped<'_>,
     fixed: &[Option<f64>],
     (x, y): (usize, Option<usize>),

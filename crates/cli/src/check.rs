@@ -8,7 +8,7 @@ use std::{
 };
 
 use flagred::{
-    check::{OutvotedInput, alone},
+    check::{InputRisk, risks_of_single_inputs},
     profile::Profile,
     verdict::Level,
 };
@@ -89,10 +89,10 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
         let (of_profile, examined, accepted) = if is_profile(&source) {
             arguments.claims.about_rule_sets(path)?;
             let examined = examine_profile(path, &source)?;
-            let (profile, findings, alone, accepted) = examined;
+            let (profile, findings, input_risks, accepted) = examined;
             let analysed = None;
             let examined = Examination { findings, analysed };
-            (Some((profile, alone)), examined, accepted)
+            (Some((profile, input_risks)), examined, accepted)
         } else {
             let examined = examine(&source, arguments)?;
             let accepted = examined.accepted();
@@ -130,8 +130,8 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
                         visible(&of)
                     )?;
                 }
-                if let Some((profile, alone)) = &of_profile {
-                    write_alone(&mut out, &file, alone)?;
+                if let Some((profile, input_risks)) = &of_profile {
+                    write_input_risks(&mut out, &file, input_risks)?;
                     let reads_motors = profile.as_ref().is_none_or(Profile::reads_motors);
                     if !reads_motors {
                         writeln!(
@@ -145,9 +145,9 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
             }
             Format::Json => {
                 let json = match &of_profile {
-                    Some((profile, alone)) => {
+                    Some((profile, input_risks)) => {
                         let name = profile.as_ref().map(|profile| profile.name.as_str());
-                        CheckDocument::profile(&file, name, &findings.0, alone)
+                        CheckDocument::profile(&file, name, &findings.0, input_risks)
                             .with_accepted(accepted)
                     }
                     None => CheckDocument::rules(&file, &examined),
@@ -190,7 +190,7 @@ fn examine<'s>(source: &'s Source, arguments: &Arguments) -> Result<Examination<
 type ExaminedProfile = (
     Option<Profile>,
     Findings,
-    Vec<OutvotedInput>,
+    Vec<InputRisk>,
     Vec<AcceptedFindings>,
 );
 
@@ -205,14 +205,21 @@ fn examine_profile(path: &Path, source: &Source) -> Result<ExaminedProfile, Fail
     let file = path.display().to_string();
     let rules = profile::rule_set(&profile, (&file, source), folder)?;
     let (findings, estimator) = profile::examine(source, &rules);
-    let alone = estimator.as_ref().map(alone).unwrap_or_default();
+    let input_risks = estimator
+        .as_ref()
+        .map(risks_of_single_inputs)
+        .unwrap_or_default();
     let accepted = profile::accepted(source, &rules);
-    Ok((Some(profile), findings, alone, accepted))
+    Ok((Some(profile), findings, input_risks, accepted))
 }
 
 /// A line for each input: `battery  0 (empty)  battery_risk 95 %, FAIL`.
-fn write_alone(out: &mut impl Write, file: &str, alone: &[OutvotedInput]) -> Result<(), Failure> {
-    if alone.is_empty() {
+fn write_input_risks(
+    out: &mut impl Write,
+    file: &str,
+    input_risks: &[InputRisk],
+) -> Result<(), Failure> {
+    if input_risks.is_empty() {
         return Ok(());
     }
     let file = visible(file);
@@ -220,7 +227,7 @@ fn write_alone(out: &mut impl Write, file: &str, alone: &[OutvotedInput]) -> Res
         out,
         "{file}: the highest risk that each input causes while all others are calm:"
     )?;
-    let rows: Vec<[String; 3]> = alone.iter().map(row).collect();
+    let rows: Vec<[String; 3]> = input_risks.iter().map(row).collect();
     let width = |column: usize| {
         let cells = rows.iter().map(|row| row[column].chars().count());
         cells.max().unwrap_or(0)
@@ -232,7 +239,7 @@ fn write_alone(out: &mut impl Write, file: &str, alone: &[OutvotedInput]) -> Res
     Ok(())
 }
 
-fn row(one: &OutvotedInput) -> [String; 3] {
+fn row(one: &InputRisk) -> [String; 3] {
     let value = number(one.value, 4);
     let value = match &one.term {
         Some(term) => format!("{value} ({})", visible(term)),

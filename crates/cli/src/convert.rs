@@ -31,7 +31,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     output.write_with(|out| flagred_report::table::write_flight(out, &flight))?;
     for warning in flagred_report::words::conversion(&arguments.log.display().to_string(), &flight)
     {
-        output::say(&format!("warning: {warning}"));
+        output::print_note(&format!("warning: {warning}"));
     }
     Ok(Exit::Clean)
 }

@@ -180,20 +180,20 @@ impl<'e> Watch<'e> {
             taken += usize::from(is_taken);
         }
         self.stream.end();
-        self.tell(now_s);
+        self.collect_events(now_s);
         taken
     }
 
     /// Advances the clock.
     pub fn tick(&mut self, now_s: f64) {
         self.session.tick(now_s, &mut self.out);
-        self.tell(now_s);
+        self.collect_events(now_s);
     }
 
     /// Ends the watch and the current flight.
     pub fn finish(&mut self, now_s: f64) {
         self.session.finish(&mut self.out);
-        self.tell(now_s);
+        self.collect_events(now_s);
     }
 
     /// Returns the output since the previous call.
@@ -216,7 +216,7 @@ impl<'e> Watch<'e> {
         })
     }
 
-    fn tell(&mut self, now_s: f64) {
+    fn collect_events(&mut self, now_s: f64) {
         for event in self.out.events.drain(..) {
             let (session, estimator) = (&self.session, self.estimator);
             let words = self.words.line(now_s, &event, session, estimator);

@@ -18,12 +18,12 @@ mod flights;
 mod fmt;
 #[doc(hidden)] // For fuzz targets and tests of other packages.
 pub mod fuzzing;
+mod held_out;
 mod help;
 mod identify;
 mod import;
 mod inspect;
 mod learn;
-mod left_out;
 mod lsp;
 mod man;
 mod map;
@@ -179,7 +179,7 @@ impl Command {
             Command::Validate(arguments) => validate::run(&arguments),
             Command::Evaluate(arguments) => {
                 arguments.are_flights()?;
-                output::say(
+                output::print_note(
                     "note: `evaluate` is called `validate` now; the old name is removed in the next release",
                 );
                 validate::run(&arguments)

@@ -89,7 +89,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn errors_name_what_is_allowed() {
+    fn errors_list_the_allowed_values() {
         assert_eq!(whole(2, 100)("5"), Ok(5));
         for wrong in ["1", "101", "five", "1e1", "-3", "5%", ""] {
             let error = whole(2_u32, 100)(wrong).unwrap_err();

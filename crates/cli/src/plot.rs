@@ -61,7 +61,7 @@ fn curves(engine: &Engine) -> Result<Vec<Slice>, Failure> {
             range: Scale::new(variable.low, variable.high),
             x: axis.clone(),
             y: None,
-            held: Vec::new(),
+            fixed: Vec::new(),
             filling: None,
             cells: Vec::with_capacity(POINTS),
         });

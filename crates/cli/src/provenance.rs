@@ -17,11 +17,11 @@ use crate::failure::Failure;
 
 /// Returns the text of a rule set that a command derived from another one, with the provenance step.
 pub(crate) fn rule_set(
-    begun_with: &str,
+    original_text: &str,
     model: Model,
     step: ProvenanceStep,
 ) -> Result<String, Failure> {
-    flagred_authoring::provenance::rule_set(begun_with, model, step).map_err(|findings| {
+    flagred_authoring::provenance::rule_set(original_text, model, step).map_err(|findings| {
         let problems = findings.0.into_iter().map(|finding| finding.message);
         Failure::unreadable("the new rule set could not be read back, and nothing was written")
             .details(problems.collect())

@@ -261,7 +261,7 @@ pub(crate) fn read(
             .iter()
             .filter_map(|(row, _)| row.values.get(column));
         if let Some(warning) = Extent::of(values.copied()).warning(variable) {
-            output::say(&warning);
+            output::print_note(&warning);
         }
     }
     if arguments.clamp {
@@ -294,7 +294,7 @@ fn clamp(data: &mut Data, variables: &[&Variable]) {
             }
         }
         if let Some(first) = first {
-            output::say(&format!(
+            output::print_note(&format!(
                 "`{}` is outside its range from {low} to {high} in {count} of {rows} rows and clamped to it (first in {first})",
                 variable.name
             ));

@@ -143,7 +143,7 @@ impl SimplifyOutcome<'_> {
     fn allowed(&self) -> String {
         match self.arguments.tolerance {
             Some(tolerance) => format!("{tolerance}"),
-            None => format!("{:e} of the range", flagred_tuning::EQUAL),
+            None => format!("{:e} of the range", flagred_tuning::EQUAL_TOLERANCE),
         }
     }
 

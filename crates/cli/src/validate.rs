@@ -119,7 +119,7 @@ fn flights(arguments: &Arguments, estimators: &Estimators) -> Result<(Evaluation
                 Ok(record) => records.push(record),
                 Err(why) => {
                     left_out.push(LeftOutFile::new(file.path.display().to_string(), &why));
-                    // A folder may contain other files than flights.
+                    // A folder may contain files other than flights.
                     if file.is_named {
                         Failure::from(why).report();
                         exit = Exit::Unreadable;
@@ -159,7 +159,7 @@ fn rows(path: &Path, estimators: &Estimators) -> Result<Evaluation, Failure> {
     let cases = flagred_evaluation::cases(&rows, estimators);
     let (cases, notes) = cases.map_err(|bad| refuse(&table, &bad))?;
     for note in notes {
-        output::say(&note);
+        output::print_note(&note);
     }
     Ok(scored(estimators, |done| {
         Evaluation::of_cases(estimators, cases, done)

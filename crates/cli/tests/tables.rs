@@ -31,7 +31,7 @@ fn eval_copies_cells_as_they_are() {
 }
 
 #[test]
-fn a_table_of_eval_is_a_snapshot_under_its_suffix() {
+fn map_check_compares_the_columns_that_eval_wrote() {
     let measured = "h;speed\n5;1\n20;4\n35;9\n";
     let folder = folder(&[("fan.yaml", FAN), ("measured.csv", measured)]);
     let layout = [

@@ -11,12 +11,12 @@ use serde::Serialize;
 use crate::{
     bootstrap::{Interval, bootstrap},
     flight::{ProfileResult, Record},
-    scores::{APART, RESAMPLES, SEED, median},
+    scores::{RESAMPLES, SEED, SEPARATE_KIND, median},
     span::Span,
     upset::UpsetAlarm,
 };
 
-/// The alarms of a profile: over all flights except those of the kind [`APART`], and for each kind.
+/// The alarms of a profile: over all flights except those of the kind [`SEPARATE_KIND`], and for each kind.
 pub(crate) struct Alarms {
     /// Alarms in calm stretches, and in flights whose error never exceeds [`ORDINARY_DEG`].
     pub(crate) calm: NeedlessAlarms,
@@ -32,7 +32,7 @@ pub(crate) struct Alarms {
 impl Alarms {
     /// Computes the alarms of a profile.
     pub(crate) fn of(profile: usize, records: &[Record]) -> Alarms {
-        let main = || records.iter().filter(|record| record.kind != APART);
+        let main = || records.iter().filter(|record| record.kind != SEPARATE_KIND);
         let of_kind = |kind: &str| {
             let records = || records.iter().filter(|record| record.kind == kind);
             (

@@ -165,7 +165,7 @@ pub struct BaselineObserver<'a> {
     /// For each motor: computes the statistics of the baselines with [`PerMotor`], in the order of `baselines`.
     motors: Vec<Observer>,
     /// The index of each baseline in `pooled`, or in each observer of `motors`; `None` if its signal is not available.
-    places: Vec<Option<usize>>,
+    indices: Vec<Option<usize>>,
 }
 
 impl<'a> BaselineObserver<'a> {
@@ -179,14 +179,14 @@ impl<'a> BaselineObserver<'a> {
         craft: Craft<'_>,
     ) -> Result<BaselineObserver<'a>, String> {
         let names = craft.signals;
-        let (mut pooled, mut apart) = (vec![], vec![]);
-        let places = baselines
+        let (mut pooled, mut per_motor) = (vec![], vec![]);
+        let indices = baselines
             .iter()
             .map(|baseline| {
                 let mut carried = baseline.source.signal.carried();
                 let is_there = carried.all(|name| names.contains(&name));
                 let sources = match baseline.per_motor {
-                    Some(_) => &mut apart,
+                    Some(_) => &mut per_motor,
                     None => &mut pooled,
                 };
                 is_there.then(|| {
@@ -195,12 +195,12 @@ impl<'a> BaselineObserver<'a> {
                 })
             })
             .collect();
-        let of_a_motor = Observer::new(apart, Craft::new(1).with_signals(names))?;
+        let of_a_motor = Observer::new(per_motor, Craft::new(1).with_signals(names))?;
         Ok(BaselineObserver {
             baselines,
             pooled: Observer::new(pooled, craft)?,
             motors: vec![of_a_motor; craft.motors],
-            places,
+            indices,
         })
     }
 
@@ -222,15 +222,15 @@ impl<'a> BaselineObserver<'a> {
     pub fn scores(&self) -> impl Iterator<Item = Option<f64>> + '_ {
         self.baselines
             .iter()
-            .zip(&self.places)
-            .map(|(baseline, place)| {
-                let value = self.value(baseline.per_motor, (*place)?)?;
+            .zip(&self.indices)
+            .map(|(baseline, index)| {
+                let value = self.value(baseline.per_motor, (*index)?)?;
                 Some(baseline.score(value))
             })
     }
 
-    fn value(&self, per_motor: Option<PerMotor>, place: usize) -> Option<f64> {
-        let of = |observer: &Observer| observer.value(place).map(|observed| observed.value);
+    fn value(&self, per_motor: Option<PerMotor>, index: usize) -> Option<f64> {
+        let of = |observer: &Observer| observer.value(index).map(|observed| observed.value);
         let mut values = self.motors.iter().filter_map(of);
         match per_motor {
             None => of(&self.pooled),

@@ -6,7 +6,7 @@ use flagred::gap::{Filling, GapMethod, GapSettings};
 use fuzzy::{
     Engine, Model,
     engine::{EvaluateError, Outcome, Scratch},
-    learn::{LearnError, Learner, Refusal, Settings},
+    learn::{LearnError, Learner, SampleError, Settings},
 };
 
 /// A sample to learn from.
@@ -96,7 +96,7 @@ pub enum ExamineError {
         /// The index of the row, from 0.
         row: usize,
         /// The reason.
-        refusal: Refusal,
+        refusal: SampleError,
     },
 }
 

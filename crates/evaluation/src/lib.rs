@@ -60,7 +60,7 @@ pub use upset::{UpsetAlarm, upset_s};
 pub use warning_matches::{EpisodeMatch, Warning, WarningMatches, match_warnings};
 
 use alarms::Alarms;
-use scores::{APART, ProfileScores};
+use scores::{ProfileScores, SEPARATE_KIND};
 use warnings::Warnings;
 
 /// A file that is not among the evaluated flights, and the reason.
@@ -129,7 +129,7 @@ impl Evaluation {
         if cases.is_empty() {
             return None;
         }
-        let main = records.iter().filter(|record| record.kind != APART);
+        let main = records.iter().filter(|record| record.kind != SEPARATE_KIND);
         let profiles = 0..estimators.profiles.len();
         Some(Evaluation {
             cases: "steps",
@@ -154,7 +154,7 @@ impl Evaluation {
         cases: Vec<Case>,
         done: &(dyn Fn() + Sync),
     ) -> Evaluation {
-        let main = || cases.iter().filter(|case| case.kind != APART);
+        let main = || cases.iter().filter(|case| case.kind != SEPARATE_KIND);
         let (names, risks) = (estimators.names(), estimators.profiles.len());
         Evaluation {
             cases: "flights",

@@ -9,7 +9,7 @@ use crate::ranking::{
 };
 
 /// The kind of flight that is reported separately, because its attitude errors result from commanded manoeuvres.
-pub(crate) const APART: &str = "manoeuvre";
+pub(crate) const SEPARATE_KIND: &str = "manoeuvre";
 
 /// The number of resamples of whole flights from which an interval is computed.
 pub(crate) const RESAMPLES: usize = 1000;
@@ -71,7 +71,7 @@ impl Scores {
 pub(crate) struct ProfileScores {
     pub(crate) name: String,
     pub(crate) description: String,
-    /// The scores over all kinds except [`APART`].
+    /// The scores over all kinds except [`SEPARATE_KIND`].
     pub(crate) all: Scores,
     /// The scores over the quiet steps of these kinds.
     pub(crate) quiet: Scores,
@@ -107,7 +107,7 @@ fn evaluated(
     is_risk: bool,
     cases: &[Case],
 ) -> ProfileScores {
-    let main = || cases.iter().filter(|case| case.kind != APART);
+    let main = || cases.iter().filter(|case| case.kind != SEPARATE_KIND);
     let ranking = Ranking::new(predictions(main(), i));
     let part = |is_in: fn(&Case) -> bool| {
         let cases = || main().filter(|case| is_in(case));

@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::{
     alarms::kinds,
     flight::Record,
-    scores::{APART, median},
+    scores::{SEPARATE_KIND, median},
     warning_matches::WarningMatches,
 };
 
@@ -34,9 +34,11 @@ pub(crate) struct Warnings {
     /// The median lead time of announced groups, in seconds.
     pub(crate) group_lead_s_median: Option<f64>,
     /// The number of episodes that were not announced, but during which a warning began.
-    pub(crate) answered: usize,
-    /// The median time from the start of an answered episode to the warning, in seconds.
-    pub(crate) answer_s_median: Option<f64>,
+    #[serde(rename = "answered")]
+    pub(crate) late: usize,
+    /// The median time from the start of such an episode to the warning, in seconds.
+    #[serde(rename = "answer_s_median")]
+    pub(crate) delay_s_median: Option<f64>,
     /// The number of periods of WARN or FAIL.
     pub(crate) warnings: usize,
     /// The number of false warnings, which no episode followed.
@@ -54,7 +56,7 @@ impl Warnings {
     /// Counts the warnings of a profile over flights.
     pub(crate) fn of<'a>(profile: usize, records: impl Iterator<Item = &'a Record>) -> Warnings {
         let mut sum = Warnings::default();
-        let (mut leads, mut group_leads, mut answers, mut on_s) = (vec![], vec![], vec![], 0.0);
+        let (mut leads, mut group_leads, mut delays, mut on_s) = (vec![], vec![], vec![], 0.0);
         for record in records {
             let Some(result) = record.results.get(profile) else {
                 continue;
@@ -81,27 +83,27 @@ impl Warnings {
                             group_leads.push(lead_s);
                         }
                     }
-                    Some(lead_s) => answers.push(-lead_s),
+                    Some(lead_s) => delays.push(-lead_s),
                     None => {}
                 }
             }
         }
         sum.announced = leads.len();
         sum.groups_announced = group_leads.len();
-        sum.answered = answers.len();
+        sum.late = delays.len();
         sum.lead_s_median = median(leads);
         sum.group_lead_s_median = median(group_leads);
-        sum.answer_s_median = median(answers);
+        sum.delay_s_median = median(delays);
         sum.share_of_time_on = (sum.hours > 0.0).then(|| on_s / (sum.hours * 3600.0));
         sum
     }
 
-    /// Counts the warnings of a profile over all flights except the kind [`APART`], and over each kind.
+    /// Counts the warnings of a profile over all flights except the kind [`SEPARATE_KIND`], and over each kind.
     pub(crate) fn by_kind(
         profile: usize,
         records: &[Record],
     ) -> (Warnings, Vec<(String, Warnings)>) {
-        let main = records.iter().filter(|record| record.kind != APART);
+        let main = records.iter().filter(|record| record.kind != SEPARATE_KIND);
         let of_kind = |kind: &str| {
             let records = records.iter().filter(|record| record.kind == kind);
             (kind.to_owned(), Warnings::of(profile, records))

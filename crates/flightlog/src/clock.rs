@@ -186,7 +186,7 @@ impl Latest {
 
     /// Whether to accept a time. A time too far after all earlier ones is damaged, unless the next such time agrees
     /// with it.
-    pub(crate) fn believe(&mut self, t_s: f64) -> bool {
+    pub(crate) fn accept(&mut self, t_s: f64) -> bool {
         let latest_s = *self.latest_s.get_or_insert(t_s);
         let agrees = |with_s: f64| t_s - with_s <= self.longest_pause_s;
         let witness = |waiting_s: f64| t_s >= waiting_s && agrees(waiting_s);
@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn damage_pauses_and_boots_are_told_apart() {
+    fn damage_pauses_and_boots_are_distinguished() {
         let cases: &[(&str, &[f64], &[f64])] = &[
             ("plain", &[5.0, 5.1, 5.2], &[5.0, 5.1, 5.2]),
             ("one wild time", &[5.0, 5.1, 9e9, 5.2], &[5.0, 5.1, 5.2]),
@@ -255,7 +255,7 @@ mod tests {
         let mut latest = Latest::new(60.0);
         let reported: Vec<bool> = [100.0, 3.0, 1e6, 101.0, 5e6, 5.00001e6, 102.0]
             .into_iter()
-            .map(|t_s| latest.believe(t_s))
+            .map(|t_s| latest.accept(t_s))
             .collect();
         assert_eq!(reported, [true, true, false, true, false, true, true]);
     }

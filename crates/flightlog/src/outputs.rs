@@ -37,7 +37,7 @@ impl Bounds {
 }
 
 /// The number of outputs, from the first, that are examined for motors if nothing else names the motors.
-const MAX_LIKE: usize = 8;
+const MAX_CANDIDATES: usize = 8;
 /// The minimum standard deviation of an output that may be a motor, in us.
 const MIN_MOVE_US: f64 = 20.0;
 /// The minimum correlation of an output that may be a motor with the mean of the first four outputs.
@@ -113,8 +113,8 @@ impl Outputs {
 
     /// Estimates the number of motors, for logs in which nothing else determines it: the largest `n` of 8, 6 and 4
     /// for which the first `n` outputs move together; `None` if the first 4 do not.
-    pub(crate) fn like_motors(&self) -> Option<u16> {
-        let row = |row: usize| -> [f64; MAX_LIKE] {
+    pub(crate) fn estimate_motor_count(&self) -> Option<u16> {
+        let row = |row: usize| -> [f64; MAX_CANDIDATES] {
             std::array::from_fn(|output| {
                 let column = self.columns.get(output);
                 match column.and_then(|column| column.get(row)) {
@@ -124,8 +124,8 @@ impl Outputs {
             })
         };
         let count = self.t_s.len();
-        let first = |row: &[f64; MAX_LIKE]| row[..4].iter().sum::<f64>() / 4.0;
-        let mean = |value: &dyn Fn(&[f64; MAX_LIKE]) -> f64| {
+        let first = |row: &[f64; MAX_CANDIDATES]| row[..4].iter().sum::<f64>() / 4.0;
+        let mean = |value: &dyn Fn(&[f64; MAX_CANDIDATES]) -> f64| {
             (0..count).map(|i| value(&row(i))).sum::<f64>() / count as f64
         };
         let first_mean = mean(&first);
@@ -137,7 +137,9 @@ impl Outputs {
             variance.sqrt() > MIN_MOVE_US
                 && covariance > TOGETHER * (variance * first_variance).sqrt()
         };
-        let alike = (0..MAX_LIKE).take_while(|&output| is_motor(output)).count();
+        let alike = (0..MAX_CANDIDATES)
+            .take_while(|&output| is_motor(output))
+            .count();
         match alike {
             8 => Some(8),
             6 | 7 => Some(6),

@@ -13,7 +13,7 @@ pub(crate) struct Parameters {
 /// The parameter of ArduPilot that selects what is logged.
 pub(crate) const LOG_BITMASK: &str = "LOG_BITMASK";
 /// The maximum number of parameters that are kept; vehicles have up to about 2,000.
-const MOST: usize = 1 << 14;
+const MAX_PARAMETERS: usize = 1 << 14;
 /// The maximum length of a name in bytes; autopilots allow 16.
 const LONGEST_NAME: usize = 64;
 
@@ -22,7 +22,7 @@ impl Parameters {
         if !value.is_finite() || self.values.contains_key(name) {
             return;
         }
-        match self.values.len() < MOST && name.len() <= LONGEST_NAME {
+        match self.values.len() < MAX_PARAMETERS && name.len() <= LONGEST_NAME {
             true => _ = self.values.insert(name.to_owned(), value),
             false => self.left_out += 1,
         }

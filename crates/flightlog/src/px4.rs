@@ -318,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn versions() {
+    fn version_numbers_are_decoded() {
         assert_eq!(firmware(17_301_759), "PX4 v1.8.0");
         assert_eq!(firmware(17_367_168), "PX4 v1.9.0 (beta)");
         assert_eq!(firmware(17_760_256), "PX4 v1.15.0 (dev)");

@@ -7,7 +7,7 @@ use crate::model_draft::ModelDraft;
 
 /// Sets the blocks from which the rules of a model were read. The settings of a single block become those of the rule
 /// set.
-pub(crate) fn settle(model: &mut Model, mut blocks: Vec<Block>) {
+pub(crate) fn set_blocks(model: &mut Model, mut blocks: Vec<Block>) {
     if let [block] = &blocks[..]
         && block.enabled
     {

@@ -26,7 +26,7 @@ fn is_space(c: char) -> bool {
 }
 
 /// The text after the comments at its start.
-pub(crate) fn behind(text: &str) -> &str {
+pub(crate) fn after_comments(text: &str) -> &str {
     let mut rest = text.trim_start_matches(is_space);
     while let Some((_, after)) = first(rest) {
         rest = after.trim_start_matches(is_space);

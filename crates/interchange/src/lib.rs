@@ -101,7 +101,7 @@ impl Format {
     /// The format of a text, detected from its start after comments; `None` if it is none of these formats.
     #[must_use]
     pub fn of(text: &str) -> Option<Format> {
-        let text = comments::behind(text);
+        let text = comments::after_comments(text);
         let starts = |word: &str| {
             text.get(..word.len())
                 .is_some_and(|start| start.eq_ignore_ascii_case(word))

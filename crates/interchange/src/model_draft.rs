@@ -163,7 +163,13 @@ impl<'t> ModelDraft<'t> {
 
     /// Whether another item is allowed after `count` items; otherwise an error is reported, once. Every item is
     /// compared with the earlier ones, so the time grows with the square of their number.
-    pub(crate) fn has_room(&mut self, count: usize, most: usize, what: &str, part: &str) -> bool {
+    pub(crate) fn allows_another(
+        &mut self,
+        count: usize,
+        most: usize,
+        what: &str,
+        part: &str,
+    ) -> bool {
         let is_reported = |finding: &Diagnostic| finding.code == "too-large";
         if count >= most && !self.findings.last().is_some_and(is_reported) {
             let message = format!("there are more than {most} {what}");
@@ -178,9 +184,9 @@ impl<'t> ModelDraft<'t> {
     }
 
     /// Whether another term may be added to a variable; otherwise an error is reported, once.
-    pub(crate) fn has_room_for_term(&mut self, variable: &Variable, part: &str) -> bool {
+    pub(crate) fn allows_another_term(&mut self, variable: &Variable, part: &str) -> bool {
         let what = format!("terms of `{}`", variable.name);
-        self.has_room(variable.terms.len(), MAX_TERMS, &what, part)
+        self.allows_another(variable.terms.len(), MAX_TERMS, &what, part)
     }
 
     /// Whether an error makes the text unreadable.

@@ -158,7 +158,7 @@ pub(crate) const DEFUZZIFIERS: &Words<Defuzzifier> = &[
     (Defuzzifier::Tsukamoto, ["", "WeightedAverage", "", ""]),
 ];
 
-/// Whether a character may occur on a line and in XML.
+/// Whether a character may occur within a line of text and in XML.
 pub(crate) fn is_printable(c: char) -> bool {
     !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}' | '\u{2028}' | '\u{2029}')
 }

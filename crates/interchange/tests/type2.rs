@@ -80,7 +80,7 @@ fn evaluate(model: &Model, inputs: &[f64]) -> fuzzy::Outcome {
 /// ahmettaskin/type-2-fuzzy-logic-systems-matlab-toolbox). The numbers in its rule set are intervals: the left end of
 /// the result is computed from their lower ends, the right end from their upper ends.
 #[test]
-fn the_toolbox_prints_this_value() {
+fn a_result_of_the_matlab_toolbox_is_reproduced() {
     let low = evaluate(&read(&toolbox("KM", LOWER)), &[0.1, 0.5]).low();
     let high = evaluate(&read(&toolbox("KM", UPPER)), &[0.1, 0.5]).high();
     let y = 0.5 * (low.unwrap() + high.unwrap());

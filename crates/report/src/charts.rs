@@ -69,10 +69,10 @@ pub(crate) fn stretch(flight: &Flight) -> Stretch {
     }
 }
 
-/// The shortest stretch that is drawn, in seconds.
+/// The minimum length of a drawn stretch, in seconds.
 const SHORTEST_S: f64 = 0.1;
 
-/// The part of a stretch that is within another, extended to at least the shortest stretch that is drawn.
+/// The part of a stretch that is within another, extended to at least the minimum length of a drawn stretch.
 pub(crate) fn within(part: Stretch, whole: Stretch) -> Stretch {
     let latest_s = (whole.end_s - SHORTEST_S).max(whole.start_s);
     // `max` and `min` replace NaN by the ends of `whole`.
@@ -127,13 +127,13 @@ pub(crate) fn timeline(flight: &Flight, assessed: &Assessment, shown: Stretch) -
         };
         (span, level_class(finding.severity))
     });
-    let said = flight
+    let messages = flight
         .messages
         .iter()
         .map(|message| (message.t_s(), message.what.clone()));
     let boots = flight.boots_s.iter();
     let boots = boots.map(|t_s| (*t_s, "the autopilot rebooted".to_owned()));
-    let mut events: Vec<(f64, String)> = said
+    let mut events: Vec<(f64, String)> = messages
         .chain(boots)
         .filter(|(t_s, _)| stretch.contains(*t_s))
         .collect();

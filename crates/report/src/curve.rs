@@ -352,7 +352,7 @@ mod tests {
     }
 
     #[test]
-    fn times_are_finer_in_a_short_stretch() {
+    fn short_stretches_have_finer_times() {
         let points = || [(10.0, 1.0), (10.0025, 2.0)].into_iter();
         assert_eq!(path(points(), STRETCH, 2.0, 1), "M0 1h0L0 2");
         let end_s = 11.5;
@@ -361,7 +361,7 @@ mod tests {
     }
 
     #[test]
-    fn an_area_goes_around_its_values_and_breaks_where_they_are_unknown() {
+    fn an_area_encloses_its_values_and_breaks_where_they_are_unknown() {
         let points = [
             (10.0, Some((1.0, 4.0))),
             (10.1, Some((2.0, 5.0))),

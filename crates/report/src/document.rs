@@ -112,14 +112,14 @@ pub struct FindingDocument<'a> {
 }
 
 impl<'a> FindingDocument<'a> {
-    /// Creates the document of a finding, described with the context `teller`.
-    pub fn new(finding: &'a Finding, teller: FindingContext<'a>) -> Self {
+    /// Creates the document of a finding, described with `context`.
+    pub fn new(finding: &'a Finding, context: FindingContext<'a>) -> Self {
         let Words {
             code, text, advice, ..
-        } = teller.words(finding);
+        } = context.words(finding);
         FindingDocument {
-            output: teller.motor(finding).map(|motor| motor.output.as_str()),
-            finding: numbered(finding, teller.motors),
+            output: context.motor(finding).map(|motor| motor.output.as_str()),
+            finding: numbered(finding, context.motors),
             code,
             text,
             advice,
@@ -149,7 +149,7 @@ pub fn document<'a>(
 ) -> Document<'a> {
     let profile = estimator.profile();
     let findings = assessed.findings.iter();
-    let teller = FindingContext {
+    let context = FindingContext {
         estimator,
         motors: &flight.motors,
     };
@@ -179,7 +179,7 @@ pub fn document<'a>(
         },
         verdict: &assessed.verdict,
         findings: findings
-            .map(|finding| FindingDocument::new(finding, teller))
+            .map(|finding| FindingDocument::new(finding, context))
             .collect(),
         findings_left_out: assessed.findings_left_out,
         summary: &assessed.summary,

@@ -33,7 +33,8 @@ pub fn lines(findings: &[Finding]) -> Vec<Line<'_>> {
         match lines.iter_mut().find(|line| is_same(line.worst, finding)) {
             Some(line) => {
                 line.count += 1;
-                if (finding.severity, gravity(finding)) > (line.worst.severity, gravity(line.worst))
+                if (finding.severity, severity_value(finding))
+                    > (line.worst.severity, severity_value(line.worst))
                 {
                     line.worst = finding;
                 }
@@ -62,7 +63,7 @@ fn is_same(a: &Finding, b: &Finding) -> bool {
 }
 
 /// The severity of the peak of a finding; for a reserve, smaller values are more severe.
-fn gravity(finding: &Finding) -> f64 {
+fn severity_value(finding: &Finding) -> f64 {
     match finding.measure {
         Measure::Reserve => -finding.value_pct,
         _ => finding.value_pct,
@@ -170,8 +171,8 @@ pub(crate) fn highest_of<'f>(output: &str, findings: &'f [Finding]) -> Option<&'
 }
 
 /// The advice of a finding, and the positions of the motors that it names.
-pub(crate) fn advice(teller: FindingContext<'_>, finding: &Finding, flight: &Flight) -> String {
-    let advice = teller.words(finding).advice;
+pub(crate) fn advice(context: FindingContext<'_>, finding: &Finding, flight: &Flight) -> String {
+    let advice = context.words(finding).advice;
     match positions(finding, flight) {
         Some(positions) => format!("{advice} {positions}"),
         None => advice,

@@ -4,7 +4,7 @@ use flagred::{
     estimator::Estimator,
     flight::{Assessment, Peak, Verdict},
     loaded::Loaded,
-    profile::{Followed, Reliability},
+    profile::{ErrorFrequency, Reliability},
     verdict::Measure,
 };
 use maud::{Markup, html};
@@ -99,7 +99,7 @@ fn at(peak: Peak, clock: Clock) -> String {
 pub(crate) fn findings(subject: &Subject, loaded: &Loaded) -> Markup {
     let assessed = &subject.assessed;
     let clock = Clock::Since(subject.stretch().start_s);
-    let teller = FindingContext {
+    let context = FindingContext {
         estimator: &loaded.estimator,
         motors: &subject.flight.motors,
     };
@@ -117,11 +117,11 @@ pub(crate) fn findings(subject: &Subject, loaded: &Loaded) -> Markup {
             }
             @for line in finding::lines(&assessed.findings) {
                 li.(charts::level_class(line.worst.severity)) {
-                    span.what { b { (line.worst.severity) } " " (teller.words(line.worst).text) }
+                    span.what { b { (line.worst.severity) } " " (context.words(line.worst).text) }
                     br;
-                    (finding::advice(teller, line.worst, &subject.flight))
+                    (finding::advice(context, line.worst, &subject.flight))
                     br;
-                    span.soft { (line.when(clock)) ". " (teller.details_by(line.worst, clock)) }
+                    span.soft { (line.when(clock)) ". " (context.details_by(line.worst, clock)) }
                 }
             }
             @if unknown.is_none() && assessed.findings.is_empty() {
@@ -195,7 +195,8 @@ fn figures(subject: &Subject, estimator: &Estimator) -> Markup {
 
 /// How often large attitude errors followed a risk, if it was measured.
 fn reliability(rows: &[Reliability]) -> Markup {
-    let of = |counts: Option<Followed>| counts.and_then(words::share).unwrap_or("unknown".into());
+    let of =
+        |counts: Option<ErrorFrequency>| counts.and_then(words::share).unwrap_or("unknown".into());
     html! {
         @if !rows.is_empty() {
             details {

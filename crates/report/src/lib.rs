@@ -4,6 +4,7 @@
 //! document ([`document`]), as one HTML page ([`page`]) and as tables ([`steps`], [`table`]). All functions return or
 //! write text; none opens a file.
 
+pub mod available;
 mod charts;
 mod clock;
 mod curve;
@@ -14,7 +15,6 @@ pub mod finding;
 mod head;
 pub mod moment;
 mod names;
-pub mod offered;
 pub mod page;
 mod panel;
 mod parts;

@@ -10,7 +10,7 @@ use flagred_flightlog::Flight;
 use fuzzy::engine::{ExplainedInput, FiredRule};
 use serde::Serialize;
 
-/// The state at a time of a flight.
+/// The state of a flight at a given time.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Moment<'a> {

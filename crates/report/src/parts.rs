@@ -8,12 +8,11 @@ use fuzzy::{
 use maud::{Markup, html};
 
 use crate::{
-    charts,
+    available, charts,
     clock::Clock,
     curve::Stretch,
     decision,
     head::{about, head},
-    offered,
     panel::panel,
     sources::sources,
     subject::Subject,
@@ -117,7 +116,7 @@ impl<'a> Report<'a> {
     /// Renders the curves of some signals of the log, by their names; those that the log does not have are left out.
     pub fn signals(&self, names: &[String]) -> String {
         let (flight, estimator) = (&self.subject.flight, &self.loaded.estimator);
-        shown(offered::panels(flight, estimator, &self.timeline, names))
+        shown(available::panels(flight, estimator, &self.timeline, names))
     }
 
     pub(crate) fn markup(&self, part: Part) -> Markup {
@@ -173,7 +172,7 @@ impl<'a> Report<'a> {
                 section("Attitude and battery", "", panels, timeline)
             }
             Part::Events => events(timeline),
-            Part::Signals => offered::folded(flight, estimator, timeline),
+            Part::Signals => available::folded(flight, estimator, timeline),
             Part::Sources => sources(subject, loaded),
             Part::Texts => texts(loaded),
         }

@@ -6,7 +6,7 @@ use anstyle::{AnsiColor, Style};
 use flagred::{
     estimator::Estimator,
     flight::{Assessment, Peak, Summary, Verdict},
-    profile::{Followed, Profile},
+    profile::{ErrorFrequency, Profile},
     shipped,
     verdict::Level,
 };
@@ -90,22 +90,22 @@ pub fn write(
         }
     }
     writeln!(out)?;
-    let teller = FindingContext {
+    let context = FindingContext {
         estimator,
         motors: &flight.motors,
     };
     if verbose {
         for finding in &assessed.findings {
-            let code = teller.words(finding).code;
-            let text = format!("{} [{code}]", teller.finding(finding));
+            let code = context.words(finding).code;
+            let text = format!("{} [{code}]", context.finding(finding));
             line(out, finding.severity, &text)?;
-            indented(out, &finding::advice(teller, finding, flight))?;
-            indented(out, &teller.details(finding))?;
+            indented(out, &finding::advice(context, finding, flight))?;
+            indented(out, &context.details(finding))?;
         }
     } else {
         for one in finding::lines(&assessed.findings) {
-            line(out, one.worst.severity, &teller.line(&one))?;
-            indented(out, &finding::advice(teller, one.worst, flight))?;
+            line(out, one.worst.severity, &context.line(&one))?;
+            indented(out, &finding::advice(context, one.worst, flight))?;
         }
     }
     if !assessed.findings.is_empty() {
@@ -154,13 +154,13 @@ pub fn write_line(
         let value = number(assumed.value, 6);
         parts.push(format!("`{}` assumed to be {value}", assumed.input));
     }
-    let teller = FindingContext {
+    let context = FindingContext {
         estimator,
         motors: &flight.motors,
     };
     let lines = finding::lines(&assessed.findings);
-    if let Some(gravest) = lines.first() {
-        parts.push(teller.line(gravest).trim_end_matches('.').to_owned());
+    if let Some(worst) = lines.first() {
+        parts.push(context.line(worst).trim_end_matches('.').to_owned());
     }
     match lines.len() {
         0 | 1 => {}
@@ -380,7 +380,7 @@ pub(crate) fn unknown_share_pct(summary: &Summary) -> Option<f64> {
 }
 
 /// Formats the share of moments that were followed by an error: `54 % of 1280`; `None` if there are no moments.
-pub(crate) fn share(counts: Followed) -> Option<String> {
+pub(crate) fn share(counts: ErrorFrequency) -> Option<String> {
     let share_pct = counts.share_pct()?;
     Some(format!("{share_pct:.0} % of {}", counts.moments))
 }

@@ -68,7 +68,7 @@ pub enum ClusterError {
 }
 
 /// The search ends when no degree changes by more than this.
-const ENOUGH: f64 = 1e-9;
+const CONVERGENCE: f64 = 1e-9;
 
 /// Finds clusters of rows. Distances are computed from the unscaled values, so scale the columns
 /// first if their units differ.
@@ -153,7 +153,7 @@ fn search(rows: &[Vec<f64>], mut centers: Vec<Vec<f64>>, settings: &Settings) ->
         let pairs = degrees.iter().flatten().zip(next.iter().flatten());
         let change = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         degrees = next;
-        if change <= ENOUGH {
+        if change <= CONVERGENCE {
             break;
         }
     }

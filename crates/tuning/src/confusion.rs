@@ -77,7 +77,7 @@ mod tests {
     }
 
     #[test]
-    fn quantities_have_no_classes() {
+    fn continuous_targets_have_no_confusion_matrix() {
         let tenths: Vec<f64> = (0..30).map(|i| f64::from(i % 3) / 10.0).collect();
         let many: Vec<f64> = (0..100).map(|i| f64::from(i % 11)).collect();
         for truths in [tenths, many, vec![0.0, 1.0, 2.0], vec![1.0; 30]] {

@@ -135,7 +135,7 @@ pub(crate) fn fit(
 }
 
 /// Returns the best steps within limits. It starts from `steps`, the best steps without limits, and sets one step at a
-/// time to the minimum of the error while the others are fixed, until none changes. The error is convex, so the result
+/// time to the value that minimises the error while the others are fixed, until none changes. The error is convex, so the result
 /// is its minimum.
 fn within(
     limits: &[(f64, f64)],

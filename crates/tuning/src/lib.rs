@@ -41,7 +41,8 @@ pub use numbers::{ChangedNumber, Number, moved_although_fixed, numbers, with_num
 pub use reliability::Bin;
 pub use settings::{Loss, Settings, TuneError};
 pub use simplify::{
-    Difference, EQUAL, MAX_RULES, SimplifyError, SimplifyResult, SimplifySettings, simplify,
+    Difference, EQUAL_TOLERANCE, MAX_RULES, SimplifyError, SimplifyResult, SimplifySettings,
+    simplify,
 };
 pub use validation::{CurvePoint, Validation, cross_validate, learning_curve};
 

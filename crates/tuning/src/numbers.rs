@@ -201,8 +201,8 @@ fn shape(variable: &str, width: f64, term: &mut Term, value: &mut Change<'_>) {
     }
 }
 
-/// Returns the two nearest numbers with `digits` significant digits on either side of `value`, or `value` alone if it
-/// has no more digits. For a position, `width` is the width of its range: if that is smaller than the position, it
+/// Returns the nearest number with `digits` significant digits on each side of `value`, or only `value` if it has no
+/// more digits. For a position, `width` is the width of its range: if that is smaller than the position, it
 /// determines the last digit. A position near 0 is not rounded more finely than its range requires: three digits are at
 /// most 0.05 % of the width.
 pub(crate) fn round(value: f64, digits: u32, width: f64) -> Vec<f64> {

@@ -71,7 +71,7 @@ impl OrderedPositions {
         for segment in &self.segments {
             let (own, behind) = rest.split_at(segment.free().min(rest.len()));
             rest = behind;
-            segment.place(own, &mut positions);
+            segment.append_positions(own, &mut positions);
         }
         // The last position is the upper end of the range, which is not part of the result.
         positions.truncate(self.count);
@@ -81,20 +81,20 @@ impl OrderedPositions {
 
 impl OrderedPositions {
     /// Whether these positions can result from some free numbers.
-    pub(crate) fn holds(&self, positions: &[f64]) -> bool {
+    pub(crate) fn contains(&self, positions: &[f64]) -> bool {
         let mut rest = positions;
         self.segments.iter().all(|segment| {
             let inner = segment.distances.len().saturating_sub(1).min(rest.len());
             let (own, behind) = rest.split_at(inner);
             // The positions of the segment are followed by the fixed one that ends it.
             rest = behind.get(1..).unwrap_or_default();
-            segment.holds(own) && behind.first().is_none_or(|fixed| *fixed == segment.to)
+            segment.contains(own) && behind.first().is_none_or(|fixed| *fixed == segment.to)
         })
     }
 }
 
 impl Segment {
-    fn holds(&self, positions: &[f64]) -> bool {
+    fn contains(&self, positions: &[f64]) -> bool {
         let slack = 1e-12 * (self.to - self.from);
         let ends = positions.iter().copied().chain([self.to]);
         let mut before = self.from;
@@ -146,7 +146,7 @@ impl Segment {
     }
 
     /// Appends the positions after `from`, including `to`.
-    fn place(&self, free: &[f64], positions: &mut Vec<f64>) {
+    fn append_positions(&self, free: &[f64], positions: &mut Vec<f64>) {
         let moved = || std::iter::once(0.0).chain(free.iter().copied());
         let known = || self.distances.iter().flatten().zip(moved());
         let least: f64 = known().map(|((least, _), _)| least).sum();
@@ -230,7 +230,7 @@ mod tests {
             let moved = ordered.positions(&free[..ordered.free()]);
             prop_assert_eq!(moved.len(), positions.len());
             let as_given: Vec<f64> = positions.iter().map(|(position, _)| *position).collect();
-            prop_assert!(ordered.holds(&as_given));
+            prop_assert!(ordered.contains(&as_given));
             for ((before, is_fixed), after) in positions.iter().zip(&moved) {
                 prop_assert!(!is_fixed || before == after);
                 prop_assert!((0.0..=10.0).contains(after));

@@ -417,7 +417,7 @@ impl FreeParameters {
         match self {
             FreeParameters::Partition(ordered) => variable
                 .partition_peaks()
-                .is_some_and(|peaks| ordered.holds(&peaks)),
+                .is_some_and(|peaks| ordered.contains(&peaks)),
             FreeParameters::Terms { anchors, anchored } => {
                 let anchor = |anchored: &AnchoredTerm| {
                     let parameters = variable
@@ -430,7 +430,7 @@ impl FreeParameters {
                         .map(|(.., value)| *value)
                 };
                 let positions: Option<Vec<f64>> = anchored.iter().map(anchor).collect();
-                positions.is_some_and(|positions| anchors.holds(&positions))
+                positions.is_some_and(|positions| anchors.contains(&positions))
             }
             FreeParameters::Consequents(_) => true,
         }

@@ -21,7 +21,7 @@ const LONGEST: f64 = 2.0;
 const MIN_GAIN: f64 = 1e-7;
 
 /// The number of poor steps that end a search.
-const PATIENCE: u32 = 3;
+const MAX_POOR_STEPS: u32 = 3;
 
 /// Receives the step and the best point that satisfies all claims, if there is one yet, and returns whether to
 /// continue.
@@ -68,7 +68,7 @@ pub(crate) fn search(
         } else {
             0
         };
-        if poor == PATIENCE {
+        if poor == MAX_POOR_STEPS {
             break;
         }
     }

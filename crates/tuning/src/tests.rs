@@ -249,19 +249,22 @@ fn a_learning_curve_ends_with_the_validation_and_falls() {
     }
     let settings = Settings::default();
     let mut ok = |_: u32, _: &Progress<'_>| ControlFlow::Continue(());
-    let worth = cross_validate(&start, &data, &settings, 4, &mut ok).unwrap();
-    let worth = worth.unwrap();
-    let curve = learning_curve(&start, &data, &settings, 4, &worth, &mut ok)
+    let validation = cross_validate(&start, &data, &settings, 4, &mut ok).unwrap();
+    let validation = validation.unwrap();
+    let curve = learning_curve(&start, &data, &settings, 4, &validation, &mut ok)
         .unwrap()
         .unwrap();
     let shares: Vec<f64> = curve.iter().map(|point| point.share).collect();
     assert_eq!(shares, [0.125, 0.25, 0.5, 1.0]);
-    assert_eq!(curve[3].left_out, worth.after.value);
-    assert!(curve[0].left_out > 1.05 * curve[3].left_out, "{curve:?}");
-    assert!(worth.reliability.is_empty());
+    assert_eq!(curve[3].unseen_loss, validation.after.value);
+    assert!(
+        curve[0].unseen_loss > 1.05 * curve[3].unseen_loss,
+        "{curve:?}"
+    );
+    assert!(validation.reliability.is_empty());
     let mut stop = |_: u32, _: &Progress<'_>| ControlFlow::Break(());
     assert_eq!(
-        learning_curve(&start, &data, &settings, 4, &worth, &mut stop),
+        learning_curve(&start, &data, &settings, 4, &validation, &mut stop),
         Ok(None)
     );
 }
@@ -277,8 +280,8 @@ fn consequents_tuned_by_log_loss_are_calibrated_on_held_out_rows() {
         ..Settings::default()
     };
     let mut ok = |_: u32, _: &Progress<'_>| ControlFlow::Continue(());
-    let worth = cross_validate(&model, &data, &settings, 4, &mut ok);
-    let bins = worth.unwrap().unwrap().reliability;
+    let validation = cross_validate(&model, &data, &settings, 4, &mut ok);
+    let bins = validation.unwrap().unwrap().reliability;
     assert_eq!(bins.iter().map(|bin| bin.rows).sum::<usize>(), data.len());
     let apart = bins
         .iter()
@@ -364,12 +367,12 @@ fn rows_without_weight_do_not_change_figures() {
         ..Settings::default()
     };
     let mut ok = |_: u32, _: &Progress<'_>| ControlFlow::Continue(());
-    let worth = |data: &Data, ok: &mut dyn FnMut(u32, &Progress<'_>) -> ControlFlow<()>| {
+    let validation = |data: &Data, ok: &mut dyn FnMut(u32, &Progress<'_>) -> ControlFlow<()>| {
         cross_validate(&begun, data, &settings, 4, ok)
             .unwrap()
             .unwrap()
     };
-    assert_eq!(worth(&data, &mut ok), worth(&more, &mut ok));
+    assert_eq!(validation(&data, &mut ok), validation(&more, &mut ok));
 }
 
 fn constants(values: [f64; 2]) -> Model {
@@ -478,7 +481,7 @@ fn constants_end_at_the_end_of_the_range_for_targets_far_beyond_it() {
 /// The rows pull one constant far beyond the range, and the other to a value inside. The first does not affect the
 /// second.
 #[test]
-fn a_constant_inside_the_range_is_optimal_beside_one_at_its_end() {
+fn a_constant_at_its_limit_does_not_affect_the_others() {
     let heat: Vec<f64> = (0..=20).map(|i| f64::from(i) / 2.0).collect();
     let truths = heat.iter().map(|heat| if *heat <= 2.0 { 6.0 } else { 1e4 });
     let data = Data {

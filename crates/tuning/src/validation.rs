@@ -51,7 +51,7 @@ pub fn cross_validate(
     let whole = Objective::new(model, &parameters, data, settings);
     let before = whole.point(model.clone())?.predictions;
     let folds = Folds::new(data, folds, settings.seed);
-    let Some(after) = left_out(model, data, settings, &folds, EIGHTHS, watch)? else {
+    let Some(after) = predict_folds(model, data, settings, &folds, EIGHTHS, watch)? else {
         return Ok(None);
     };
     let figures = |data: &Data| {
@@ -84,14 +84,14 @@ pub struct CurvePoint {
     /// The share of the other rows, or of their groups, that is used for tuning.
     pub share: f64,
     /// The loss on unseen rows; see [`crate::Loss`].
-    pub left_out: f64,
+    pub unseen_loss: f64,
 }
 
 /// The number of parts into which the known rows are divided for a learning curve.
 const EIGHTHS: usize = 8;
 
 /// Computes the loss of [`cross_validate`] with models tuned on an eighth, a quarter and half of the rows outside the
-/// fold. The last point, for all of these rows, is taken from `worth`, the result of [`cross_validate`] with the same
+/// fold. The last point, for all of these rows, is taken from `validation`, the result of [`cross_validate`] with the same
 /// arguments. If the curve still falls at its end, more rows would help.
 ///
 /// # Errors
@@ -101,7 +101,7 @@ pub fn learning_curve(
     data: &Data,
     settings: &Settings,
     folds: u32,
-    worth: &Validation,
+    validation: &Validation,
     watch: &mut dyn FnMut(u32, &Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Option<Vec<CurvePoint>>, TuneError> {
     data.check(model, settings.loss)?;
@@ -111,24 +111,25 @@ pub fn learning_curve(
     let folds = Folds::new(data, folds, settings.seed);
     let mut curve = Vec::new();
     for eighths in [1, 2, 4] {
-        let Some(predictions) = left_out(model, data, settings, &folds, eighths, watch)? else {
+        let Some(predictions) = predict_folds(model, data, settings, &folds, eighths, watch)?
+        else {
             return Ok(None);
         };
         curve.push(CurvePoint {
             share: eighths as f64 / EIGHTHS as f64,
-            left_out: whole.measure_of(&predictions, data),
+            unseen_loss: whole.measure_of(&predictions, data),
         });
     }
     curve.push(CurvePoint {
         share: 1.0,
-        left_out: worth.after.value,
+        unseen_loss: validation.after.value,
     });
     Ok(Some(curve))
 }
 
 /// Predicts the rows of each fold by a model tuned on `eighths` eighths of the other rows; `None` if `watch` ended the
 /// search.
-fn left_out(
+fn predict_folds(
     model: &Model,
     data: &Data,
     settings: &Settings,

@@ -156,8 +156,8 @@ impl Plan<'_> {
             self.inputs.iter().all(|input| {
                 let channel = self.channels.get(input.channel);
                 channel.is_some_and(|channel| {
-                    channel.in_bins == input.statistic.is_of_bins()
-                        && (!channel.exponential || input.statistic.is_of_weights())
+                    channel.in_bins == input.statistic.uses_bins()
+                        && (!channel.exponential || input.statistic.supports_exponential())
                 }) && input.others().all(|other| {
                     let other = self.inputs.get(other);
                     other.is_some_and(|other| other.ratio.is_none())

@@ -11,8 +11,8 @@ pub struct Rules<'a> {
     pub table: Table<'a>,
     /// The stages of a rule set whose outputs read other outputs; otherwise empty. See [`Chain`].
     pub stages: &'a [Stage],
-    /// See [`Chain::places`].
-    pub places: &'a [u32],
+    /// See [`Chain::indices`].
+    pub indices: &'a [u32],
 }
 
 impl<'a> Rules<'a> {
@@ -23,7 +23,7 @@ impl<'a> Rules<'a> {
             stages => Some(Chain {
                 table: self.table,
                 stages,
-                places: self.places,
+                indices: self.indices,
             }),
         }
     }

@@ -179,7 +179,7 @@ pub(crate) fn assumed(inputs: &[Input], seen: &[ChannelState], input: usize) -> 
     if_missing.filter(|_| seen.get(channel).is_some_and(|seen| !seen.has_arrived))
 }
 
-/// Adds a sample at `t_s`, which applies to the `held_s` seconds before, to all channels.
+/// Adds a sample to all channels. It was taken at `t_s` and applies to the preceding `held_s` seconds.
 pub(crate) fn push(
     channels: &[Channel],
     seen: &mut [ChannelState],
@@ -236,7 +236,7 @@ pub(crate) fn value(
         true => (exponential.total(), exponential.samples()),
         false => (window.total(), window.samples()),
     };
-    if statistic.is_of_bins() {
+    if statistic.uses_bins() {
         let latest = bin.moments();
         samples += u32::from(latest.weight() > 0.0);
         total.merge(&latest);

@@ -58,8 +58,8 @@ pub(super) fn thresholds(
                 .risk_pct
                 .is_some_and(|limit| limit > 1.0 && limit <= low)
         };
-        let left_out = left_out(estimator.model(), &profile.output);
-        match left_out.first().filter(|_| levels.iter().any(is_always)) {
+        let omitted = omitted_terms(estimator.model(), &profile.output);
+        match omitted.first().filter(|_| levels.iter().any(is_always)) {
             None => found.extend(reached),
             // This is the cause of all these findings.
             Some(proposition) => {
@@ -115,7 +115,7 @@ pub(super) fn thresholds(
 
 /// Returns the terms of inputs that the rules for an output leave out, as propositions: `battery IS enough`. Empty if a rule
 /// has a hedge or a `NOT`, which may cover other terms, or if it joins conditions.
-fn left_out(model: &Model, output: &str) -> Vec<String> {
+fn omitted_terms(model: &Model, output: &str) -> Vec<String> {
     let rules = model.rules.iter().map(|rule| &rule.rule);
     let rules = rules.filter(|rule| {
         rule.consequents
@@ -144,9 +144,8 @@ fn left_out(model: &Model, output: &str) -> Vec<String> {
             .iter()
             .map(move |term| (&input.name, &term.name))
     });
-    let left_out =
-        terms.filter(|(input, term)| !covered.contains(&(input.as_str(), term.as_str())));
-    left_out
+    let omitted = terms.filter(|(input, term)| !covered.contains(&(input.as_str(), term.as_str())));
+    omitted
         .map(|(input, term)| format!("{input} IS {term}"))
         .collect()
 }

@@ -204,7 +204,7 @@ fn an_input_that_raises_no_level_alone_is_reported_as_outvoted() {
         let text = with(signal);
         let (_, estimator) = fit(&text, &rules);
         let estimator = estimator.unwrap();
-        let reached = alone(&estimator)
+        let reached = risks_of_single_inputs(&estimator)
             .into_iter()
             .find(|one| one.input == "battery");
         let reported = outvoted(&fuzzy::Source::new(&*text), &estimator).0;
@@ -241,7 +241,7 @@ fn an_input_that_raises_no_level_alone_is_reported_as_outvoted() {
         .0,
         []
     );
-    let reached = alone(&shipped);
+    let reached = risks_of_single_inputs(&shipped);
     let battery = reached.iter().find(|one| one.input == "battery").unwrap();
     assert_eq!(
         (

@@ -112,8 +112,8 @@ pub struct Step {
     pub t_s: f64,
     /// The estimate of the risk; `None` if the risk is unknown.
     pub estimate: Option<Estimate>,
-    /// The interval of the risk from the uncertainty of its inputs; `None` if the risk or the uncertainty is unknown, and
-    /// without [`Assessor::with_intervals`](super::Assessor::with_intervals).
+    /// The interval of the risk that results from the uncertainty of its inputs; `None` if the risk or the uncertainty is
+    /// unknown, or if [`Assessor::with_intervals`](super::Assessor::with_intervals) was not called.
     pub risk_interval: Option<RiskInterval>,
     /// The elevated risk in %.
     pub elevated_risk_pct: Option<f64>,

@@ -56,7 +56,7 @@ impl Finding {
     }
 
     /// A finding about another risk of the profile.
-    pub(super) fn elsewhere(of_risk: &RiskFinding, estimator: &Estimator) -> Finding {
+    pub(super) fn of_other_risk(of_risk: &RiskFinding, estimator: &Estimator) -> Finding {
         let other = estimator.others().get(of_risk.risk).unwrap_or(estimator);
         Finding {
             risk_output: Some(other.profile().output.clone()),

@@ -28,7 +28,7 @@ pub(super) struct Losses {
 struct MotorLoss {
     /// The index of the first such motor.
     motor: usize,
-    /// Whether other motors were unknown too.
+    /// Whether the commands of other motors were unknown too.
     others: bool,
     /// The command of that motor, if it is a number far outside [0, 1].
     command: Option<f64>,

@@ -145,7 +145,7 @@ impl Serialize for Steps<'_> {
     }
 }
 
-/// The state at one time of a flight as serde data; from [`Step::by_name`].
+/// The state of a flight at one time, for serialisation; created by [`Step::by_name`].
 #[derive(Debug, Clone, Copy, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(rename = "Step"))]

@@ -32,7 +32,7 @@ impl Verdict {
     /// assert_eq!(good.clone().worst(good.clone().lost_in_air()).to_string(), "NA");
     /// ```
     pub fn worst(self, other: Verdict) -> Verdict {
-        match self.gravity() >= other.gravity() {
+        match self.severity_rank() >= other.severity_rank() {
             true => self,
             false => other,
         }
@@ -47,7 +47,7 @@ impl Verdict {
         }
     }
 
-    fn gravity(&self) -> u8 {
+    fn severity_rank(&self) -> u8 {
         match self {
             Verdict::NotAvailable(Reason::NoFlight) => 0,
             Verdict::NotAvailable(Reason::LostInAir | Reason::SetBackInAir { .. }) => 3,
@@ -94,9 +94,9 @@ pub enum Reason {
     /// of the time.
     #[error("{}", motor_unknown((.motor, .others), .command, (.from_s, .to_s), .unknown_s))]
     MotorUnknown {
-        /// The number of the motor; of several motors, the one that was unknown first.
+        /// The number of the motor; of several motors, the one whose command was unknown first.
         motor: usize,
-        /// Whether other motors were unknown too.
+        /// Whether the commands of other motors were unknown too.
         others: bool,
         /// The first unknown command of that motor, if it is a number far outside 0 to 1.
         command: Option<f64>,

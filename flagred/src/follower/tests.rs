@@ -14,14 +14,14 @@ const LIMIT: [f64; 4] = [0.0, 1.0, 0.0, 1.0];
 const IDLE: [f64; 4] = [0.0; 4];
 
 /// A monitor and its clock, at 50 Hz.
-struct Flown {
+struct SimulatedFlight {
     monitor: Monitor,
     samples: u32,
 }
 
-impl Flown {
-    fn new(estimator: &Estimator) -> Flown {
-        Flown {
+impl SimulatedFlight {
+    fn new(estimator: &Estimator) -> SimulatedFlight {
+        SimulatedFlight {
             monitor: Monitor::new(estimator, Craft::new(4)).unwrap(),
             samples: 0,
         }
@@ -70,28 +70,28 @@ fn last(updates: &[Update]) -> Update {
 }
 
 /// A flight that reached FAIL.
-fn failed() -> Flown {
-    let mut flown = Flown::new(&shipped::flagred_paper());
-    flown.fly(10.0, true, HOVER);
-    let updates = flown.fly(3.0, true, LIMIT);
+fn failed() -> SimulatedFlight {
+    let mut flight = SimulatedFlight::new(&shipped::flagred_paper());
+    flight.fly(10.0, true, HOVER);
+    let updates = flight.fly(3.0, true, LIMIT);
     assert_eq!(last(&updates).level, Some(Level::Fail));
-    flown
+    flight
 }
 
 #[test]
 fn a_flickering_land_detector_does_not_end_the_flight() {
-    let mut flown = failed();
-    let flicker = flown.fly(0.9, false, LIMIT);
+    let mut flight = failed();
+    let flicker = flight.fly(0.9, false, LIMIT);
     assert_eq!(ended(&flicker), []);
     assert_eq!(last(&flicker).risk, Err(Unknown::OnGround));
     assert_eq!(last(&flicker).level, Some(Level::Fail));
-    let again = flown.fly(0.1, true, LIMIT);
+    let again = flight.fly(0.1, true, LIMIT);
     assert_eq!(ended(&again), []);
     // The windows were not cleared.
     assert!(again[0].risk.is_ok());
     assert_eq!(last(&again).level, Some(Level::Fail));
 
-    let landed = flown.fly(1.1, false, LIMIT);
+    let landed = flight.fly(1.1, false, LIMIT);
     let [finding] = ended(&landed)[..] else {
         panic!("{landed:?}")
     };
@@ -101,30 +101,33 @@ fn a_flickering_land_detector_does_not_end_the_flight() {
 
 #[test]
 fn idling_on_the_ground_raises_nothing() {
-    let mut flown = Flown::new(&shipped::flagred_paper());
-    let idle = flown.fly(30.0, true, IDLE);
+    let mut flight = SimulatedFlight::new(&shipped::flagred_paper());
+    let idle = flight.fly(30.0, true, IDLE);
     assert!(idle.iter().all(|u| u.risk == Err(Unknown::OnGround)));
     assert!(idle.iter().all(|u| u.level.is_none()));
     // The first seconds in the air count from the time at which the motors leave idle.
-    let off = flown.fly(4.0, true, HOVER);
+    let off = flight.fly(4.0, true, HOVER);
     assert!(off.iter().all(|update| !update.judged));
-    assert_eq!(flown.monitor.finish(), [None; 4]);
+    assert_eq!(flight.monitor.finish(), [None; 4]);
 }
 
 #[test]
 fn idling_after_a_calm_landing_keeps_no_level() {
-    let mut flown = failed();
-    flown.fly(5.0, true, HOVER);
-    assert_eq!(last(&flown.fly(0.02, true, HOVER)).level, Some(Level::Fail));
-    let idle = flown.fly(1.1, true, IDLE);
+    let mut flight = failed();
+    flight.fly(5.0, true, HOVER);
+    assert_eq!(
+        last(&flight.fly(0.02, true, HOVER)).level,
+        Some(Level::Fail)
+    );
+    let idle = flight.fly(1.1, true, IDLE);
     assert_eq!(ended(&idle).len(), 1);
     assert_eq!(last(&idle).level, None);
 }
 
 #[test]
 fn motors_at_idle_after_a_high_risk_are_not_a_landing() {
-    let mut flown = failed();
-    let falling = flown.fly(5.0, true, IDLE);
+    let mut flight = failed();
+    let falling = flight.fly(5.0, true, IDLE);
     assert_eq!(ended(&falling), []);
     assert!(falling.iter().all(|update| update.risk.is_ok()));
     assert_eq!(last(&falling).level, Some(Level::Fail));
@@ -134,15 +137,15 @@ fn motors_at_idle_after_a_high_risk_are_not_a_landing() {
 #[test]
 fn motors_that_idle_while_the_vehicle_is_reported_in_the_air_are_a_fall() {
     for estimator in [shipped::flagred(), shipped::flagred_paper()] {
-        let mut flown = Flown::new(&estimator);
-        flown.fly(30.0, true, HOVER);
-        let falling = flown.fly(6.0, true, [0.03; 4]);
+        let mut flight = SimulatedFlight::new(&estimator);
+        flight.fly(30.0, true, HOVER);
+        let falling = flight.fly(6.0, true, [0.03; 4]);
         let is_alarm = |update: &&Update| update.level > Some(Level::Good);
         let first_s = falling.iter().find(is_alarm).unwrap().t_s;
         assert!((33.0..33.5).contains(&first_s), "{first_s}");
         assert_eq!(last(&falling).level, Some(Level::Fail));
         assert!(last(&falling).judged);
-        let [finding] = ended(&flown.fly(2.0, false, IDLE))[..] else {
+        let [finding] = ended(&flight.fly(2.0, false, IDLE))[..] else {
             panic!("one finding")
         };
         assert_eq!(
@@ -151,7 +154,7 @@ fn motors_that_idle_while_the_vehicle_is_reported_in_the_air_are_a_fall() {
         );
         assert_eq!((finding.cause, finding.motor), (None, None));
         // On the ground the fall has ended.
-        let idle = flown.fly(10.0, true, IDLE);
+        let idle = flight.fly(10.0, true, IDLE);
         assert!(idle.iter().all(|update| update.level.is_none()));
     }
 }
@@ -159,10 +162,10 @@ fn motors_that_idle_while_the_vehicle_is_reported_in_the_air_are_a_fall() {
 #[test]
 fn a_late_or_silent_land_detector_raises_no_level() {
     for (idle_s, in_air) in [(2.9, Some(true)), (20.0, None)] {
-        let mut flown = Flown::new(&shipped::flagred());
-        flown.fly(30.0, true, HOVER);
-        let mut updates = flown.fly_reporting(idle_s, in_air, |_| IDLE);
-        updates.extend(flown.fly(5.0, false, IDLE));
+        let mut flight = SimulatedFlight::new(&shipped::flagred());
+        flight.fly(30.0, true, HOVER);
+        let mut updates = flight.fly_reporting(idle_s, in_air, |_| IDLE);
+        updates.extend(flight.fly(5.0, false, IDLE));
         assert!(updates.iter().all(|u| u.risk == Err(Unknown::OnGround)));
         assert_eq!(ended(&updates), []);
     }
@@ -170,11 +173,11 @@ fn a_late_or_silent_land_detector_raises_no_level() {
 
 #[test]
 fn a_bounce_is_not_a_fall() {
-    let mut flown = Flown::new(&shipped::flagred());
-    flown.fly(30.0, true, HOVER);
+    let mut flight = SimulatedFlight::new(&shipped::flagred());
+    flight.fly(30.0, true, HOVER);
     for _ in 0..3 {
-        let mut updates = flown.fly(2.5, true, IDLE);
-        updates.extend(flown.fly(2.0, true, HOVER));
+        let mut updates = flight.fly(2.5, true, IDLE);
+        updates.extend(flight.fly(2.0, true, HOVER));
         assert!(updates.iter().all(|u| u.level <= Some(Level::Good)));
     }
 }
@@ -193,22 +196,22 @@ inputs:
         let mut profile = TEXT.parse::<Profile>().unwrap();
         profile.sampling.take_off_s = take_off_s;
         let rules = shipped::flagred_paper_rules();
-        let mut flown = Flown::new(&Estimator::new(&profile, &rules).unwrap());
-        flown.fly(5.0, false, IDLE);
-        flown.fly(2.0, true, [0.9; 4]);
+        let mut flight = SimulatedFlight::new(&Estimator::new(&profile, &rules).unwrap());
+        flight.fly(5.0, false, IDLE);
+        flight.fly(2.0, true, [0.9; 4]);
         // Until the window covers `warm_up_s` of the time after take-off, it includes the take-off.
-        flown.fly(1.9, true, HOVER);
-        assert!(flown.monitor.inputs()[0] < 0.4);
-        flown.fly(0.2, true, HOVER);
+        flight.fly(1.9, true, HOVER);
+        assert!(flight.monitor.inputs()[0] < 0.4);
+        flight.fly(0.2, true, HOVER);
         match drops {
-            true => assert_eq!(flown.monitor.inputs(), [0.5, 0.0]),
-            false => assert!(flown.monitor.inputs()[0] < 0.4),
+            true => assert_eq!(flight.monitor.inputs(), [0.5, 0.0]),
+            false => assert!(flight.monitor.inputs()[0] < 0.4),
         }
     }
 }
 
 /// A flight whose profile reports notices only.
-fn noticing(notices: NoticeSettings) -> Flown {
+fn noticing(notices: NoticeSettings) -> SimulatedFlight {
     let mut profile = shipped::flagred_paper().profile().clone();
     let never = LevelSettings {
         raise: Threshold::default(),
@@ -219,7 +222,7 @@ fn noticing(notices: NoticeSettings) -> Flown {
     profile.verdict.fail = never;
     profile.verdict.notices = notices;
     let estimator = Estimator::new(&profile, &shipped::flagred_paper_rules()).unwrap();
-    Flown::new(&estimator)
+    SimulatedFlight::new(&estimator)
 }
 
 fn limit(value: f64, after_s: f64) -> Option<Limit> {
@@ -228,19 +231,19 @@ fn limit(value: f64, after_s: f64) -> Option<Limit> {
 
 #[test]
 fn little_reserve_is_reported_while_it_lasts_and_ends_with_the_flight() {
-    let mut flown = noticing(NoticeSettings {
+    let mut flight = noticing(NoticeSettings {
         reserve: limit(0.1, 3.0),
         ..NoticeSettings::default()
     });
-    let calm = flown.fly(20.0, true, [0.85; 4]);
+    let calm = flight.fly(20.0, true, [0.85; 4]);
     assert!(calm.iter().all(|update| update.level <= Some(Level::Good)));
-    let heavy = flown.fly(15.0, true, [0.96; 4]);
+    let heavy = flight.fly(15.0, true, [0.96; 4]);
     let change = heavy.iter().find_map(|u| Some((u.t_s, u.change?)));
     let (warned_s, Level::Warn) = change.unwrap() else {
         panic!("{change:?}")
     };
     assert!((23.0..28.0).contains(&warned_s), "{warned_s}");
-    let open = flown.monitor.open_finding().unwrap();
+    let open = flight.monitor.open_finding().unwrap();
     assert_eq!(
         (open.severity, open.measure),
         (Level::Warn, Measure::Reserve)
@@ -248,9 +251,9 @@ fn little_reserve_is_reported_while_it_lasts_and_ends_with_the_flight() {
     assert_eq!(open.threshold_pct, 10.0);
     assert!((4.0..6.0).contains(&open.value_pct), "{}", open.value_pct);
 
-    let light = flown.fly(5.0, true, HOVER);
+    let light = flight.fly(5.0, true, HOVER);
     assert_eq!(last(&light).level, Some(Level::Warn));
-    let landed = flown.fly(2.0, false, IDLE);
+    let landed = flight.fly(2.0, false, IDLE);
     assert_eq!(ended(&landed).len(), 1);
     // On the ground there is no level; it does not change to GOOD.
     assert!(landed.iter().all(|update| update.change.is_none()));
@@ -260,11 +263,11 @@ fn little_reserve_is_reported_while_it_lasts_and_ends_with_the_flight() {
 /// With so few samples, the risk is always unknown.
 #[test]
 fn little_reserve_is_reported_where_the_risk_is_unknown() {
-    let flown = noticing(NoticeSettings {
+    let flight = noticing(NoticeSettings {
         reserve: limit(0.1, 3.0),
         ..NoticeSettings::default()
     });
-    let mut monitor = flown.monitor;
+    let mut monitor = flight.monitor;
     let updates: Vec<Update> = (0..60)
         .map(|t_s| {
             let motors = if t_s < 30 { [0.8; 4] } else { [0.96; 4] };
@@ -289,10 +292,10 @@ fn a_motor_is_reported_only_if_it_leaves_its_usual_share() {
         imbalance: limit(0.25, 3.0),
         ..NoticeSettings::default()
     };
-    let mut flown = noticing(notices);
-    flown.fly(40.0, true, HOVER);
-    flown.fly(20.0, true, [0.4, 0.9, 0.4, 0.4]);
-    let [.., Some(finding)] = flown.monitor.finish() else {
+    let mut flight = noticing(notices);
+    flight.fly(40.0, true, HOVER);
+    flight.fly(20.0, true, [0.4, 0.9, 0.4, 0.4]);
+    let [.., Some(finding)] = flight.monitor.finish() else {
         panic!("no imbalance")
     };
     assert_eq!(
@@ -303,9 +306,9 @@ fn a_motor_is_reported_only_if_it_leaves_its_usual_share() {
     let motor = finding.motor.unwrap();
     assert_eq!((motor.number, motor.side), (2, Side::Upper));
 
-    let mut flown = noticing(notices);
-    flown.fly(60.0, true, [0.4, 0.9, 0.4, 0.4]);
-    assert_eq!(flown.monitor.finish(), [None; 4]);
+    let mut flight = noticing(notices);
+    flight.fly(60.0, true, [0.4, 0.9, 0.4, 0.4]);
+    assert_eq!(flight.monitor.finish(), [None; 4]);
 }
 
 #[test]
@@ -316,13 +319,13 @@ fn noise_is_information_and_changes_no_level() {
         [if even { 0.45 } else { 0.55 }; 4]
     };
     for (above, is_reported) in [(0.04, true), (0.08, false)] {
-        let mut flown = noticing(NoticeSettings {
+        let mut flight = noticing(NoticeSettings {
             noise: limit(above, 3.0),
             ..NoticeSettings::default()
         });
-        let updates = flown.fly_with(30.0, true, shaken);
+        let updates = flight.fly_with(30.0, true, shaken);
         assert!(updates.iter().all(|update| update.change.is_none()));
-        let [_, noise, ..] = flown.monitor.finish();
+        let [_, noise, ..] = flight.monitor.finish();
         assert_eq!(noise.is_some(), is_reported, "{noise:?}");
         if let Some(noise) = noise {
             assert_eq!(

@@ -35,7 +35,7 @@ impl Field<'_> {
     /// The coordinates of a knot.
     pub(super) fn point(&self, knot: usize) -> Vec<f64> {
         let axes = self.coordinates.iter().enumerate();
-        axes.map(|(axis, places)| places[self.knots.place(knot, axis)])
+        axes.map(|(axis, coordinates)| coordinates[self.knots.index_along(knot, axis)])
             .collect()
     }
 
@@ -49,13 +49,15 @@ impl Field<'_> {
     pub(super) fn beside(&self, knot: usize) -> Vec<(usize, f64)> {
         let knots = self.knots;
         let width = |axis: usize| {
-            let (place, places) = (knots.place(knot, axis), &self.coordinates[axis]);
-            let before = place
+            let (index, coordinates) = (knots.index_along(knot, axis), &self.coordinates[axis]);
+            let before = index
                 .checked_sub(1)
-                .map_or(0.0, |b| places[place] - places[b]);
-            let behind = places.get(place + 1).map_or(0.0, |b| b - places[place]);
+                .map_or(0.0, |b| coordinates[index] - coordinates[b]);
+            let behind = coordinates
+                .get(index + 1)
+                .map_or(0.0, |b| b - coordinates[index]);
             // An input with only one knot has no width.
-            if places.len() > 1 {
+            if coordinates.len() > 1 {
                 (before + behind) / 2.0
             } else {
                 1.0
@@ -63,12 +65,13 @@ impl Field<'_> {
         };
         let cell: f64 = (0..self.coordinates.len()).map(width).product();
         let mut beside = Vec::new();
-        for (axis, places) in self.coordinates.iter().enumerate() {
+        for (axis, coordinates) in self.coordinates.iter().enumerate() {
             for other in [knots.previous(knot, axis), knots.next(knot, axis)] {
                 let Some(other) = other else {
                     continue;
                 };
-                let step = places[knots.place(other, axis)] - places[knots.place(knot, axis)];
+                let step = coordinates[knots.index_along(other, axis)]
+                    - coordinates[knots.index_along(knot, axis)];
                 beside.push((other, cell / width(axis) / step.abs()));
             }
         }

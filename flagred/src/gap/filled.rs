@@ -50,8 +50,8 @@ impl FilledKnots<'_> {
         let mut points = alloc::vec![alloc::vec::Vec::new()];
         for (axis, interval) in inputs.iter().enumerate() {
             let (start, end) = (self.starts.get(axis)?, self.starts.get(axis + 1)?);
-            let places = self.coordinates.get(*start as usize..*end as usize)?;
-            let inside = places.iter().copied();
+            let coordinates = self.coordinates.get(*start as usize..*end as usize)?;
+            let inside = coordinates.iter().copied();
             let inside = inside.filter(|x| interval.low < *x && *x < interval.high);
             let along = || {
                 [interval.low, interval.high]
@@ -127,12 +127,20 @@ fn read_from<'a>(
     let Some(&x) = point.get(depth) else {
         return values.get(knot).copied();
     };
-    let places = axis(depth)?;
-    let behind = places.partition_point(|place| *place <= x);
-    let at = |place| read_from(axis, values, point, depth + 1, knot * places.len() + place);
+    let coordinates = axis(depth)?;
+    let behind = coordinates.partition_point(|place| *place <= x);
+    let at = |place| {
+        read_from(
+            axis,
+            values,
+            point,
+            depth + 1,
+            knot * coordinates.len() + place,
+        )
+    };
     let (Some(left), Some(right)) = (
-        behind.checked_sub(1).and_then(|i| places.get(i)),
-        places.get(behind),
+        behind.checked_sub(1).and_then(|i| coordinates.get(i)),
+        coordinates.get(behind),
     ) else {
         return at(behind.saturating_sub(1));
     };

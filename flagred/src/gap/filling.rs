@@ -18,7 +18,7 @@ use super::{
 #[derive(Debug, Clone, PartialEq)]
 pub struct Filling {
     /// See [`FilledKnots::coordinates`].
-    places: Vec<f64>,
+    coordinates: Vec<f64>,
     starts: Vec<u32>,
     /// See [`FilledKnots::values`]. Empty if the rules are proven to leave no gap, if no knot is covered, or if there are
     /// too many inputs.
@@ -49,7 +49,7 @@ impl Filling {
         };
         let variable = &modelled.variable;
         let coverage_below = settings.coverage_below(model);
-        let ask = |knots: &Knots| -> Result<Vec<Option<f64>>, EvaluateError> {
+        let known_values = |knots: &Knots| -> Result<Vec<Option<f64>>, EvaluateError> {
             let columns = knots.columns();
             let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
             let outcomes = engine.evaluate_batch(&columns)?;
@@ -64,14 +64,14 @@ impl Filling {
         let is_needed = !has_no_gap(model, modelled, coverage_below);
         let Some(inner) = Knots::of(model, &read).filter(|_| is_needed) else {
             return Ok(Filling {
-                places: Vec::new(),
+                coordinates: Vec::new(),
                 starts: Vec::new(),
                 values: Vec::new(),
                 distances: Vec::new(),
                 coverage_below,
             });
         };
-        let known = ask(&inner)?;
+        let known = known_values(&inner)?;
         let knots = inner.with_ends(model);
         let mut values = Vec::new();
         if known.iter().any(Option::is_some) {
@@ -83,14 +83,14 @@ impl Filling {
                 .collect();
         }
         let mut starts = vec![0];
-        for places in &knots.axes {
-            starts.push(starts.last().copied().unwrap_or(0) + places.len() as u32);
+        for coordinates in &knots.axes {
+            starts.push(starts.last().copied().unwrap_or(0) + coordinates.len() as u32);
         }
         Ok(Filling {
-            places: knots.axes.concat(),
+            coordinates: knots.axes.concat(),
             starts,
             values,
-            distances: distances(&knots, &ask(&knots)?),
+            distances: distances(&knots, &known_values(&knots)?),
             coverage_below,
         })
     }
@@ -115,7 +115,7 @@ impl Filling {
     /// The filled knots; `None` if nothing is filled.
     pub(crate) fn borrowed(&self) -> Option<FilledKnots<'_>> {
         (!self.values.is_empty()).then_some(FilledKnots {
-            coordinates: &self.places,
+            coordinates: &self.coordinates,
             starts: &self.starts,
             values: &self.values,
             distances: &self.distances,
@@ -162,7 +162,7 @@ fn nearest(field: &Field) -> Vec<(f64, usize)> {
 /// The distance of each knot to the nearest covered knot, in shares of the inputs' ranges; 0 for a covered knot.
 fn distances(knots: &Knots, known: &[Option<f64>]) -> Vec<f64> {
     let shares = knots.axes.iter().zip(&knots.ranges);
-    let shares = shares.map(|(places, range)| places.iter().map(|x| x / range).collect());
+    let shares = shares.map(|(coordinates, range)| coordinates.iter().map(|x| x / range).collect());
     let field = Field {
         coordinates: shares.collect(),
         knots,

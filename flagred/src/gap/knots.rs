@@ -62,18 +62,24 @@ impl Knots {
 
     /// The same grid, extended to the ends of the inputs' ranges, unless this makes it larger than four times the maximum.
     pub(super) fn with_ends(&self, model: &Model) -> Knots {
-        let axes = self.axes.iter().zip(&model.inputs).map(|(places, input)| {
-            if places.len() == 1 {
-                return places.clone();
-            }
-            let before = Some(input.low).filter(|low| places.first().is_some_and(|x| low < x));
-            let behind = Some(input.high).filter(|high| places.last().is_some_and(|x| high > x));
-            before
-                .into_iter()
-                .chain(places.iter().copied())
-                .chain(behind)
-                .collect()
-        });
+        let axes = self
+            .axes
+            .iter()
+            .zip(&model.inputs)
+            .map(|(coordinates, input)| {
+                if coordinates.len() == 1 {
+                    return coordinates.clone();
+                }
+                let before =
+                    Some(input.low).filter(|low| coordinates.first().is_some_and(|x| low < x));
+                let behind =
+                    Some(input.high).filter(|high| coordinates.last().is_some_and(|x| high > x));
+                before
+                    .into_iter()
+                    .chain(coordinates.iter().copied())
+                    .chain(behind)
+                    .collect()
+            });
         let axes: Vec<Vec<f64>> = axes.collect();
         match count(&axes) <= 4 * MAX_KNOTS {
             true => Knots::over(axes, self.ranges.clone()),
@@ -100,33 +106,35 @@ impl Knots {
     }
 
     /// The index of a knot along an axis.
-    pub(super) fn place(&self, knot: usize, axis: usize) -> usize {
+    pub(super) fn index_along(&self, knot: usize, axis: usize) -> usize {
         knot / self.strides[axis] % self.axes[axis].len()
     }
 
     /// The coordinates of a knot.
     pub(super) fn point(&self, knot: usize) -> Vec<f64> {
         let axes = self.axes.iter().enumerate();
-        axes.map(|(axis, places)| places[self.place(knot, axis)])
+        axes.map(|(axis, coordinates)| coordinates[self.index_along(knot, axis)])
             .collect()
     }
 
     /// The next knot along an axis.
     pub(super) fn next(&self, knot: usize, axis: usize) -> Option<usize> {
-        let behind = self.place(knot, axis) + 1 < self.axes[axis].len();
+        let behind = self.index_along(knot, axis) + 1 < self.axes[axis].len();
         behind.then(|| knot + self.strides[axis])
     }
 
     /// The previous knot along an axis.
     pub(super) fn previous(&self, knot: usize, axis: usize) -> Option<usize> {
-        (self.place(knot, axis) > 0).then(|| knot - self.strides[axis])
+        (self.index_along(knot, axis) > 0).then(|| knot - self.strides[axis])
     }
 
     /// The coordinates of all knots, one column for each input.
     pub(super) fn columns(&self) -> Vec<Vec<f64>> {
-        let column = |(axis, places): (usize, &Vec<f64>)| {
+        let column = |(axis, coordinates): (usize, &Vec<f64>)| {
             let knots = 0..self.count();
-            knots.map(|knot| places[self.place(knot, axis)]).collect()
+            knots
+                .map(|knot| coordinates[self.index_along(knot, axis)])
+                .collect()
         };
         self.axes.iter().enumerate().map(column).collect()
     }
@@ -144,9 +152,9 @@ fn count(axes: &[Vec<f64>]) -> usize {
 }
 
 /// Adds a coordinate halfway between every two neighbours.
-fn with_middles(places: &[f64]) -> Vec<f64> {
-    let middles = places.windows(2).map(|pair| (pair[0] + pair[1]) / 2.0);
-    let mut all: Vec<f64> = middles.chain(places.iter().copied()).collect();
+fn with_middles(coordinates: &[f64]) -> Vec<f64> {
+    let middles = coordinates.windows(2).map(|pair| (pair[0] + pair[1]) / 2.0);
+    let mut all: Vec<f64> = middles.chain(coordinates.iter().copied()).collect();
     all.sort_by(f64::total_cmp);
     all
 }
@@ -173,7 +181,7 @@ rules: []
         all_knots(&fuzzy::yaml::parse(&text).unwrap().model)
     }
 
-    fn places_of(terms: &str) -> Vec<f64> {
+    fn coordinates_of(terms: &str) -> Vec<f64> {
         knots(&format!("x: {{range: [0, 1], {terms}}}"))
             .axes
             .remove(0)
@@ -181,11 +189,11 @@ rules: []
 
     #[test]
     fn a_partition_has_knots_at_peaks_and_between_them() {
-        let places = places_of("partition: {low: 0.2, middle: 0.4, high: 0.8}");
+        let coordinates = coordinates_of("partition: {low: 0.2, middle: 0.4, high: 0.8}");
         let expected = [0.2, 0.3, 0.4, 0.6, 0.8];
-        assert_eq!(places.len(), expected.len());
-        for (place, expected) in places.iter().zip(expected) {
-            approx::assert_abs_diff_eq!(*place, expected, epsilon = 1e-12);
+        assert_eq!(coordinates.len(), expected.len());
+        for (found, expected) in coordinates.iter().zip(expected) {
+            approx::assert_abs_diff_eq!(*found, expected, epsilon = 1e-12);
         }
     }
 
@@ -205,7 +213,7 @@ rules: []
     }
 
     #[test]
-    fn reading_is_linear_between_knots_and_level_beyond() {
+    fn interpolation_is_linear_between_knots_and_constant_beyond() {
         let knots = Knots::over(vec![vec![0.0, 1.0, 3.0], vec![0.0, 2.0]], vec![3.0, 2.0]);
         let plane: Vec<f64> = (0..6)
             .map(|knot| knots.axes[0][knot / 2] + 10.0 * knots.axes[1][knot % 2])
@@ -223,8 +231,11 @@ rules: []
         let inputs: Vec<String> = (0..7).map(input).collect();
         let knots = knots(&inputs.join(", "));
         assert!(knots.count() <= MAX_KNOTS, "{}", knots.count());
-        for places in &knots.axes {
-            assert_eq!((places[0], places[places.len() - 1]), (0.0, 1.0));
+        for coordinates in &knots.axes {
+            assert_eq!(
+                (coordinates[0], coordinates[coordinates.len() - 1]),
+                (0.0, 1.0)
+            );
         }
     }
 }

@@ -12,7 +12,7 @@ pub struct FilledMap {
 }
 
 impl FilledMap {
-    /// A map with the filling of its rule set. Cells that are a gap or have no value are filled.
+    /// A map with the filling of its rule set. Cells that are in a gap or have no value are filled.
     pub fn new(map: DecisionMap, filling: Filling) -> FilledMap {
         FilledMap { map, filling }
     }

@@ -55,8 +55,8 @@ fn change_along(knots: &Knots, values: &[f64], covered: &[bool], axis: usize) ->
     let pairs = pairs.filter(|(a, b)| covered[*a] && covered[*b]);
     let (mut squares, mut count) = (0.0, 0);
     for (a, b) in pairs {
-        let place = knots.place(a, axis);
-        let step = knots.axes[axis][place + 1] - knots.axes[axis][place];
+        let index = knots.index_along(a, axis);
+        let step = knots.axes[axis][index + 1] - knots.axes[axis][index];
         let slope = (values[b] - values[a]) / (step / knots.ranges[axis]);
         squares += slope * slope;
         count += 1;
@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn where_nothing_changes_inputs_count_by_their_ranges() {
+    fn inputs_without_effect_are_weighted_by_their_ranges() {
         let knots = Knots::over(vec![vec![0.0, 1.0], vec![0.0, 1.0]], vec![2.0, 1.0]);
         let found = coordinates(&knots, &[7.0; 4], &[true; 4]);
         assert_eq!(found, [vec![0.0, 0.5], vec![0.0, 1.0]]);

@@ -279,7 +279,7 @@ fn no_rule_and_nothing_to_fill_from_is_unknown() {
 }
 
 #[test]
-fn a_gap_is_filled_even_if_no_rule_fires_is_an_error() {
+fn gaps_are_filled_even_if_the_model_treats_them_as_errors() {
     let mut model = rules(true);
     model.outputs[0].when_no_rule_fires = NoRuleFires::Error;
     let estimator = Estimator::new(&profile(), &model).unwrap();

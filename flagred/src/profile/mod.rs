@@ -122,23 +122,24 @@ pub struct Reliability {
     /// The upper end of the band in %, exclusive except for 100.
     pub to_pct: f64,
     /// The frequency on flights of real vehicles.
-    pub real: Option<Followed>,
+    pub real: Option<ErrorFrequency>,
     /// The frequency on flights of simulated vehicles.
-    pub simulated: Option<Followed>,
+    pub simulated: Option<ErrorFrequency>,
 }
 
 /// How many of the moments were followed by an attitude error over 5 degrees within 5 s.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Followed {
+#[cfg_attr(feature = "schema", schemars(rename = "Followed"))]
+pub struct ErrorFrequency {
     /// The number of moments, one every 0.5 s.
     pub moments: u64,
     /// The number of these moments that were followed by an attitude error over 5 degrees within 5 s.
     pub followed: u64,
 }
 
-impl Followed {
+impl ErrorFrequency {
     /// The share of `followed` in `moments`, in %; `None` without any moment.
     pub fn share_pct(&self) -> Option<f64> {
         (self.moments > 0).then(|| 100.0 * self.followed as f64 / self.moments as f64)
@@ -242,7 +243,7 @@ impl Profile {
     /// table of signals.
     pub fn reads_motors(&self) -> bool {
         let mut signals = self.inputs.iter().map(|input| &input.source.signal);
-        self.verdict.notices.any() || signals.any(Signal::is_made_of_motors)
+        self.verdict.notices.any() || signals.any(Signal::is_computed_from_commands)
     }
 
     /// The names of the signals, other than motor commands, that the profile needs, without duplicates.

@@ -6,7 +6,7 @@ use crate::motor::{Motor, MotorRecord};
 /// The tolerance for durations, in seconds, because timestamps are sums of steps.
 pub(crate) const ROUNDING_S: f64 = 1e-6;
 
-/// The state of the level of a risk.
+/// Raises and clears the level of a risk over time.
 #[derive(Debug, Clone)]
 pub(crate) struct Alert {
     settings: VerdictSettings,

@@ -25,16 +25,16 @@ const TRIM_KNOWN_AFTER_S: f64 = 10.0;
 const ONE_MOTOR: f64 = 0.75;
 
 /// Shifts that differ by less than this count as equal.
-const EQUAL: f64 = 0.02;
+const EQUAL_TOLERANCE: f64 = 0.02;
 
 /// If the spread between the motors exceeds that of the last seconds by at least this, the motors do not slow down together.
-const APART: f64 = 0.05;
+const MAX_SPREAD_INCREASE: f64 = 0.05;
 
 /// The balance of one flight. The averages of each motor are in [`Motor`].
 #[derive(Debug, Clone)]
 pub(super) struct Balance {
     load: Average,
-    is_back: bool,
+    has_recovered: bool,
     slow_down_together: bool,
 }
 
@@ -57,13 +57,13 @@ pub(super) struct BalanceFindings {
 impl Balance {
     pub(super) const NONE: Balance = Balance {
         load: Average::NONE,
-        is_back: false,
+        has_recovered: false,
         slow_down_together: false,
     };
 
-    /// Whether all motors work as before the alarm; if no trim was learned before it, whether they work alike.
-    pub(super) fn is_back(&self) -> bool {
-        self.is_back
+    /// Whether all motors work as they did before the alarm or, if no trim had been learned by then, work equally hard.
+    pub(super) fn has_recovered(&self) -> bool {
+        self.has_recovered
     }
 
     /// Whether all motors slow down together, as they do at touch-down.
@@ -106,7 +106,7 @@ impl Balance {
         }
         let is_known = has_trim && is_settled;
         let is_alike = motors.iter().all(|m| m.difference.value.abs() < limit);
-        self.is_back = is_settled && if has_trim { is_near(motors) } else { is_alike };
+        self.has_recovered = is_settled && if has_trim { is_near(motors) } else { is_alike };
         let weak = weak(motors, limit / 2.0).filter(|_| is_known);
         let imbalance = match &weak {
             Some(_) => None,
@@ -128,7 +128,7 @@ pub(super) fn is_together(motors: &[Motor]) -> bool {
     };
     let now = spread(&|motor| motor.command - mean);
     let lately = spread(&|motor| motor.difference.value);
-    let is_apart = now >= lately + APART;
+    let is_apart = now >= lately + MAX_SPREAD_INCREASE;
     !is_settled(motors) || !is_apart
 }
 
@@ -213,7 +213,7 @@ fn responsible_motor(
             other.map(|(other, _)| other),
         ));
     }
-    let other = next.filter(|(_, next)| most - next < EQUAL);
+    let other = next.filter(|(_, next)| most - next < EQUAL_TOLERANCE);
     let other = other.map(|(other, _)| other);
     Some(named(motors, highest_one, Side::Upper, other))
 }
@@ -245,4 +245,4 @@ fn named(motors: &[Motor], motor: usize, side: Side, or: Option<usize>) -> Motor
     }
 }
 
-state! { struct Balance { load, is_back, slow_down_together } }
+state! { struct Balance { load, has_recovered, slow_down_together } }

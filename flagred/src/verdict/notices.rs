@@ -100,8 +100,8 @@ impl Notices {
     }
 
     /// Whether the motors work as before an alarm; true if that is not monitored.
-    pub(crate) fn is_back(&self) -> bool {
-        self.settings.imbalance.is_none() || self.balance.is_back()
+    pub(crate) fn has_recovered(&self) -> bool {
+        self.settings.imbalance.is_none() || self.balance.has_recovered()
     }
 
     /// Whether the motors differ no more than in the last seconds; true if that is not monitored.

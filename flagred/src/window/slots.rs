@@ -19,7 +19,7 @@ impl Window {
     pub(crate) fn parts(&self) -> impl Iterator<Item = (f64, Moments)> + Clone {
         let inside = self.inside_of_oldest();
         (0..self.len).map(move |i| {
-            let slot = &self.slots[self.place(i)];
+            let slot = &self.slots[self.ring_index(i)];
             let share = if i == 0 { inside } else { 1.0 };
             let t_s = (slot.start_s + slot.end_s) / 2.0 - self.now_s;
             (t_s, slot.moments.scaled(share))

@@ -36,32 +36,33 @@ pub(super) fn marks(shape: &MembershipFunction) -> Vec<f64> {
     }
 }
 
-/// Returns the values at which `holds` changes between two of the given values, by bisection.
-pub(super) fn changes(values: &[f64], holds: impl Fn(f64) -> bool) -> Vec<f64> {
+/// Returns the values at which `is_true` changes between two of the given values, by bisection.
+pub(super) fn changes(values: &[f64], is_true: impl Fn(f64) -> bool) -> Vec<f64> {
     let mut found = Vec::new();
     let Some(&first) = values.first() else {
         return found;
     };
-    let mut before = (first, holds(first));
+    let mut before = (first, is_true(first));
     for &x in values.get(1..).unwrap_or_default() {
-        let here = holds(x);
+        let here = is_true(x);
         if here != before.1 {
-            found.push(rounded(bisect(before.0, x, |x| holds(x) == before.1)));
+            found.push(rounded(bisect(before.0, x, |x| is_true(x) == before.1)));
         }
         before = (x, here);
     }
     found
 }
 
-/// Returns the values at which `holds` is true, but false at the next smaller and the next larger floating-point number.
-pub(super) fn points(values: &[f64], holds: impl Fn(f64) -> bool) -> Vec<f64> {
+/// Returns the values at which `is_true` returns true, although it returns false at the next smaller and the next
+/// larger floating-point number.
+pub(super) fn points(values: &[f64], is_true: impl Fn(f64) -> bool) -> Vec<f64> {
     let (Some(&low), Some(&high)) = (values.first(), values.last()) else {
         return Vec::new();
     };
     let is_alone = |x: &f64| {
         let beside = [x.next_down(), x.next_up()];
         let mut beside = beside.into_iter().filter(|x| (low..=high).contains(x));
-        holds(*x) && !beside.any(&holds)
+        is_true(*x) && !beside.any(&is_true)
     };
     values.iter().copied().filter(is_alone).collect()
 }

@@ -66,19 +66,19 @@ const MAX_MISSING: usize = 16;
 /// The maximum number of sides for which antecedents are listed. A rule for more sides would be too long to write.
 const MAX_SIDES_OF_A_RULE: usize = 6;
 /// The maximum number of formula evaluations in the search for one output.
-const MAX_LOOKS: usize = 100_000;
+const MAX_EVALUATIONS: usize = 100_000;
 /// The maximum number of formula evaluations in the searches for all outputs together.
-const MAX_LOOKS_IN_ALL: usize = 4_000_000;
+const MAX_TOTAL_EVALUATIONS: usize = 4_000_000;
 
 /// State that is shared by the searches for all outputs.
 pub(super) struct SearchBudget {
-    looks_left: usize,
+    evaluations_left: usize,
 }
 
 impl SearchBudget {
     pub(super) fn new() -> Self {
-        let looks_left = MAX_LOOKS_IN_ALL;
-        SearchBudget { looks_left }
+        let evaluations_left = MAX_TOTAL_EVALUATIONS;
+        SearchBudget { evaluations_left }
     }
 }
 
@@ -117,15 +117,15 @@ pub(super) fn uncovered(
 fn search(logic: &Logic, shared: &mut SearchBudget) -> (Vec<Cells>, bool) {
     let all: Vec<usize> = (0..logic.formulas.len()).collect();
     let mut boxes = Vec::new();
-    let most = shared.looks_left.min(MAX_LOOKS);
-    let mut looks = 0;
+    let most = shared.evaluations_left.min(MAX_EVALUATIONS);
+    let mut evaluations = 0;
     // The boxes to search, each with the formulas that may be true in it.
     let mut left = Vec::from([(logic.everywhere(), all)]);
     while let Some((cells, formulas)) = left.pop() {
         let more = formulas.len() + 1;
-        looks += more;
-        shared.looks_left = shared.looks_left.saturating_sub(more);
-        if looks > most || boxes.len() >= MAX_BOXES {
+        evaluations += more;
+        shared.evaluations_left = shared.evaluations_left.saturating_sub(more);
+        if evaluations > most || boxes.len() >= MAX_BOXES {
             return (boxes, false);
         }
         let Some(open) = undecided(logic, &cells, &formulas) else {

@@ -12,10 +12,10 @@ use crate::{
 };
 
 /// The largest difference between degrees that count as equal.
-const EQUAL: f64 = 0.05;
+const EQUAL_TOLERANCE: f64 = 0.05;
 
 /// The minimum share of a range on which a nearly constant degree is reported.
-const MOST: f64 = 0.98;
+const MIN_SHARE: f64 = 0.98;
 
 /// The number of steps over the range of a variable, at which degrees are computed.
 const STEPS: u32 = 200;
@@ -103,13 +103,15 @@ impl Degrees<'_> {
 
     /// Returns, for each value, whether the degree is nearly the largest one.
     fn is_top(&self) -> impl Iterator<Item = bool> {
-        self.at.iter().map(|degree| *degree > self.most - EQUAL)
+        self.at
+            .iter()
+            .map(|degree| *degree > self.most - EQUAL_TOLERANCE)
     }
 }
 
 /// Reports the terms of an input whose degree is nearly the same on the whole range. Also reports a term that has
 /// nearly its largest degree on nearly the whole range, if another term is fully true there too, or if only a narrow
-/// part is left for the other terms. Terms with degrees below [`EQUAL`] on the whole range are reported by the
+/// part is left for the other terms. Terms with degrees below [`EQUAL_TOLERANCE`] on the whole range are reported by the
 /// analysis of terms outside the range. A `constant` is not reported, because its author wants the same degree
 /// everywhere.
 fn constants(input: &Variable, at: &ModelPositions<'_>, found: &mut Vec<Diagnostic>) {
@@ -123,7 +125,7 @@ fn constants(input: &Variable, at: &ModelPositions<'_>, found: &mut Vec<Diagnost
             one.term.membership_function,
             MembershipFunction::Constant { .. }
         );
-        if is_constant || one.most <= EQUAL {
+        if is_constant || one.most <= EQUAL_TOLERANCE {
             continue;
         }
         if let Some((message, help)) = constant(input, one, &degrees) {
@@ -148,7 +150,7 @@ fn constant(input: &Variable, one: &Degrees<'_>, all: &[Degrees<'_>]) -> Option<
         shown(input.high)
     );
     let (least, most) = (shown(rounded(one.least)), shown(rounded(one.most)));
-    if one.most - one.least < EQUAL {
+    if one.most - one.least < EQUAL_TOLERANCE {
         let degrees = match least == most {
             true => most,
             false => format!("{least} to {most}"),
@@ -159,19 +161,20 @@ fn constant(input: &Variable, one: &Degrees<'_>, all: &[Degrees<'_>]) -> Option<
         return Some((message, help));
     }
     let share = one.is_top().filter(|is_top| *is_top).count() as f64 / one.at.len() as f64;
-    if share < MOST {
+    if share < MIN_SHARE {
         return None;
     }
     let is_beside = |other: &&Degrees<'_>| {
         let height = other.term.height;
         other.term.name != *name
             && (one.is_top().zip(&other.at))
-                .any(|(is_top, degree)| is_top && *degree > height - EQUAL)
+                .any(|(is_top, degree)| is_top && *degree > height - EQUAL_TOLERANCE)
     };
     let Some(other) = all.iter().find(is_beside).map(|other| other.term) else {
         // A crisp term whose limits are near the ends of the range is intended.
         let x = |step: u32| input.low + (input.high - input.low) * (f64::from(step) / 2000.0);
-        let is_between = |degree: f64| degree > EQUAL && degree < one.most - EQUAL;
+        let is_between =
+            |degree: f64| degree > EQUAL_TOLERANCE && degree < one.most - EQUAL_TOLERANCE;
         if share < NEARLY_ALL || !(0..=2000).any(|step| is_between(one.term.membership(x(step)))) {
             return None;
         }

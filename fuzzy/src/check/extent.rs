@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn only_consequents_of_rules_count() {
+    fn only_concluded_terms_determine_the_extent() {
         let output = "{range: [0, 12], partition: [low, medium, high]}";
         let (low, high) = of(output, "[IF x IS a THEN y IS medium]").unwrap();
         assert!((low - 6.0).abs() < 1e-9 && (high - 6.0).abs() < 1e-9);

@@ -13,7 +13,7 @@ use super::{
     Report, TermGap, TermOf, UncoveredRegion, effects,
     gaps::{Gap, gaps, is_missing},
     outer, shown,
-    terms::is_outside,
+    terms::is_zero_on_range,
 };
 use crate::{
     diagnostic::{Diagnostic, listed},
@@ -25,7 +25,7 @@ use crate::{
 };
 
 /// The maximum number of boxes that a finding lists; further boxes are only counted.
-const MAX_BOXES_TOLD: usize = 10;
+const MAX_LISTED_BOXES: usize = 10;
 
 /// Returns all diagnostics of a report, including those that the author accepts. `spans` contains the positions of the
 /// parts of the model.
@@ -34,10 +34,10 @@ pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnosti
     let mut found = Vec::new();
     duplicate_rules(model, &at, &mut found);
     let gaps = gaps(report);
-    for gap in gaps.iter().take(MAX_BOXES_TOLD) {
+    for gap in gaps.iter().take(MAX_LISTED_BOXES) {
         found.push(at.uncovered(gap));
     }
-    if let Some(more) = gaps.len().checked_sub(MAX_BOXES_TOLD)
+    if let Some(more) = gaps.len().checked_sub(MAX_LISTED_BOXES)
         && more > 0
     {
         found.push(at.more_uncovered(more, report.uncovered_complete));
@@ -363,7 +363,7 @@ impl ModelPositions<'_> {
         let term = one.term.as_deref()?;
         let mut inputs = self.model.inputs.iter();
         let input = inputs.find(|input| input.name == one.variable)?;
-        if !is_outside(input, term) {
+        if !is_zero_on_range(input, term) {
             return None;
         }
         let Variable {
@@ -443,7 +443,7 @@ impl ModelPositions<'_> {
             let help = outer::remedies(self.model, output, &one.unreached);
             return Some(Diagnostic::warning("narrow-reach", here, message).help(help));
         }
-        if outer::is_all(output, (one.low, one.high)) {
+        if outer::covers_range(output, (one.low, one.high)) {
             return None;
         }
         let message = format!(
@@ -549,13 +549,13 @@ impl ModelPositions<'_> {
 
 pub(super) fn coordinates(at: &[Coordinate]) -> String {
     /// The maximum number of inputs that are listed.
-    const MOST: usize = 6;
+    const MAX_INPUTS: usize = 6;
     let all = at
         .iter()
-        .take(MOST)
+        .take(MAX_INPUTS)
         .map(|c| format!("{} = {}", c.input, shown(c.value)));
     let mut text = all.collect::<Vec<_>>().join(", ");
-    if at.len() > MOST {
+    if at.len() > MAX_INPUTS {
         text.push_str(", ...");
     }
     text

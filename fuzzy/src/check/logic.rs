@@ -215,9 +215,9 @@ impl Logic {
 
     /// Returns whether a formula is true in some cell. Also returns true if the search takes too long.
     pub(super) fn holds_somewhere(&self, formula: &Formula) -> bool {
-        const MAX_LOOKS: usize = 2_000;
+        const MAX_EVALUATIONS: usize = 2_000;
         let mut left = vec![self.everywhere()];
-        for _ in 0..MAX_LOOKS {
+        for _ in 0..MAX_EVALUATIONS {
             let Some(cells) = left.pop() else {
                 return false;
             };

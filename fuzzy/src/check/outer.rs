@@ -63,28 +63,28 @@ pub(super) fn unreached(
             model.is_enabled(rule)
                 && consequents.any(|c| c.output.text == variable.name && c.term.text == term.name)
         });
-        let alone = alone(model, output, term).filter(|_| is_concluded)?;
-        ((alone - peak).abs() > near).then(|| UnreachedTerm {
+        let value = value_of_single_term(model, output, term).filter(|_| is_concluded)?;
+        ((value - peak).abs() > near).then(|| UnreachedTerm {
             term: term.name.clone(),
             peak,
-            alone,
+            alone: value,
         })
     });
     found.collect()
 }
 
 /// Returns whether the parts of the range outside `[low, high]` are negligible or plateaus of the outer terms.
-pub(super) fn is_all(output: &Output, (low, high): (f64, f64)) -> bool {
+pub(super) fn covers_range(output: &Output, (low, high): (f64, f64)) -> bool {
     let variable = &output.variable;
     let near = NEAR * (variable.high - variable.low);
     let [first, last] = outer(variable);
     let is_set = !output.defuzzifier.is_weighted();
-    let holds = |plateau: Option<(&Term, (f64, f64))>, from: f64, to: f64| {
+    let is_covered = |plateau: Option<(&Term, (f64, f64))>, from: f64, to: f64| {
         let plateau = plateau.filter(|_| is_set);
         to - from <= near
             || plateau.is_some_and(|(_, (left, right))| left <= from + near && right >= to - near)
     };
-    holds(first, variable.low, low) && holds(last, high, variable.high)
+    is_covered(first, variable.low, low) && is_covered(last, high, variable.high)
 }
 
 /// Returns the first and the last term in the order of their peaks, with their plateaus.
@@ -101,12 +101,12 @@ fn outer(variable: &Variable) -> [Option<(&Term, (f64, f64))>; 2] {
 }
 
 /// Returns the value of an output if only rules for one of its terms fire.
-fn alone(model: &Model, output: &Output, term: &Term) -> Option<f64> {
+fn value_of_single_term(model: &Model, output: &Output, term: &Term) -> Option<f64> {
     let always = MembershipFunction::Constant { value: 1.0 };
     let mut only = output.clone();
     only.variable.terms = Vec::from([term.clone()]);
     let name = &output.variable.name;
-    let model = Model::builder("alone")
+    let model = Model::builder("single term")
         .operators(model.operators_of_output(output))
         .input(Variable::new("a condition", 0.0, 1.0).term("that holds", always))
         .output(only)
@@ -181,8 +181,8 @@ pub(super) fn remedies(model: &Model, output: &Output, unreached: &[UnreachedTer
 /// Formats the terms of a variable with a number for each.
 fn listed(variable: &Variable, numbers: &[f64], write: impl Fn(f64) -> String) -> String {
     /// The maximum number of terms in a message.
-    const MOST: usize = 10;
-    let terms = variable.terms.iter().zip(numbers).take(MOST);
+    const MAX_TERMS: usize = 10;
+    let terms = variable.terms.iter().zip(numbers).take(MAX_TERMS);
     let terms = terms.map(|(term, number)| {
         let name = match is_plain_name(&term.name) {
             true => term.name.clone(),
@@ -191,7 +191,7 @@ fn listed(variable: &Variable, numbers: &[f64], write: impl Fn(f64) -> String) -
         format!("{name}: {}", write(*number))
     });
     let mut terms: Vec<String> = terms.collect();
-    if variable.terms.len() > MOST {
+    if variable.terms.len() > MAX_TERMS {
         terms.push("...".to_string());
     }
     format!("{{{}}}", terms.join(", "))
@@ -213,7 +213,7 @@ fn widened(model: &Model, output: &Output, unreached: &[UnreachedTerm]) -> Optio
         let short = |more: f64| {
             let mut wider = output.clone();
             [wider.variable.low, wider.variable.high] = by(more);
-            let value = alone(model, &wider, term)?;
+            let value = value_of_single_term(model, &wider, term)?;
             Some(if is_below {
                 value - one.peak
             } else {

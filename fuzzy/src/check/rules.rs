@@ -70,9 +70,9 @@ enum Parts {
 
 /// Assigns a number to each distinct part of a condition, so that conditions can be compared quickly.
 #[derive(Default)]
-struct Numbers(BTreeMap<String, usize>);
+struct PartIds(BTreeMap<String, usize>);
 
-impl Numbers {
+impl PartIds {
     fn of(&mut self, condition: &Condition) -> usize {
         let text = canonical(condition);
         let next = self.0.len();
@@ -138,11 +138,11 @@ pub(super) fn contradictions(model: &Model) -> Vec<Contradiction> {
             }));
         }
     }
-    let mut numbers = Numbers::default();
+    let mut ids = PartIds::default();
     let mut by_parts: BTreeMap<(usize, Parts), Vec<usize>> = BTreeMap::new();
     for (i, rule) in model.rules.iter().enumerate() {
         if is_compared(model, rule) {
-            let parts = numbers.parts(&rule.rule.condition);
+            let parts = ids.parts(&rule.rule.condition);
             by_parts.entry((rule.block, parts)).or_default().push(i);
         }
     }
@@ -194,7 +194,7 @@ const MAX_COMPARISONS: usize = 100_000_000;
 /// Returns the rules that have no effect because a more general rule has the same block and conclusion. Equal rules are
 /// reported elsewhere.
 pub(super) fn subsumed(model: &Model) -> Vec<SubsumedRule> {
-    let mut numbers = Numbers::default();
+    let mut ids = PartIds::default();
     let mut groups: BTreeMap<(usize, String), Vec<Member>> = BTreeMap::new();
     // If an aggregation is not the maximum, a rule adds to the result even if a more general rule fires.
     let aggregation = |output: &Output| model.operators_of_output(output).aggregation;
@@ -206,7 +206,7 @@ pub(super) fn subsumed(model: &Model) -> Vec<SubsumedRule> {
         if adds || !is_compared(model, rule) {
             continue;
         }
-        let parts = numbers.parts(&rule.rule.condition);
+        let parts = ids.parts(&rule.rule.condition);
         let weight = rule.rule.weight;
         let signature = match &parts {
             Parts::All(parts) | Parts::Any(parts) => parts

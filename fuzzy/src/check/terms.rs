@@ -47,7 +47,7 @@ pub struct EqualTerms {
 /// Returns the terms whose membership function equals that of an earlier term of the variable.
 pub(super) fn equal(variable: &Variable) -> Vec<EqualTerms> {
     let values = axis::values(variable);
-    let outside = outside(variable);
+    let zero_terms = zero_terms(variable);
     // Each fuzzy set has a hash, so that for most pairs no degrees need to be compared.
     let hashes = variable.terms.iter().map(|term| {
         is_set(&term.membership_function, variable).then(|| hash_of_degrees(term, &values))
@@ -63,7 +63,7 @@ pub(super) fn equal(variable: &Variable) -> Vec<EqualTerms> {
     let terms = || variable.terms.iter().zip(&hashes);
     for (i, second) in terms().enumerate() {
         // A term that is 0 everywhere is reported on its own.
-        if !outside.contains(&i)
+        if !zero_terms.contains(&i)
             && let Some((first, _)) = terms().take(i).find(|first| same(*first, second))
         {
             found.push(EqualTerms {
@@ -131,7 +131,7 @@ fn term_of(variable: &Variable, term: &Term) -> TermOf {
 pub(super) fn unreachable(model: &Model, never_firing: &[usize]) -> Vec<TermOf> {
     let mut found = Vec::new();
     for variable in model.variables() {
-        let terms = outside(variable).into_iter();
+        let terms = zero_terms(variable).into_iter();
         found.extend(terms.filter_map(|i| Some(term_of(variable, variable.terms.get(i)?))));
     }
     // The rules that never fire are sorted.
@@ -159,7 +159,7 @@ pub(super) fn unreachable(model: &Model, never_firing: &[usize]) -> Vec<TermOf> 
 }
 
 /// Returns whether the term with the given name is 0 on the whole range of its variable.
-pub(super) fn is_outside(variable: &Variable, term: &str) -> bool {
+pub(super) fn is_zero_on_range(variable: &Variable, term: &str) -> bool {
     let values = axis::values(variable);
     let mut terms = variable.terms.iter().filter(|one| one.name == term);
     terms.any(|term| is_set(&term.membership_function, variable) && is_zero(term, &values))
@@ -170,7 +170,7 @@ fn is_zero(term: &Term, values: &[f64]) -> bool {
 }
 
 /// Returns the indices of the terms that are 0 on the whole range of a variable.
-fn outside(variable: &Variable) -> Vec<usize> {
+fn zero_terms(variable: &Variable) -> Vec<usize> {
     let range = variable.high - variable.low;
     if range.is_nan() || range <= 0.0 {
         // An invalid range is reported elsewhere.

@@ -14,7 +14,8 @@ use crate::model::{Aggregation, Implication, MembershipFunction, Term};
 
 mod kinks;
 
-/// The number of evenly spaced cuts for a formula, which may have a kink anywhere. Narrower details may be missed.
+/// The number of evenly spaced cuts for a formula, which may have a kink anywhere. Details that are narrower than
+/// the distance between cuts may be missed.
 const EVENLY: u32 = 256;
 
 /// The maximum number of mutually crossing terms for which memory is reserved.
@@ -255,8 +256,8 @@ impl Curves {
         }
     }
 
-    /// Fills `parts` with the activated terms between `from` and `to`, except those that are 0 there. The interval
-    /// must be inside the one for which `runs` was filled. If the kinks of all terms are known, each activated term
+    /// Fills `parts` with the activated terms that are not 0 on the interval `[from, to]`. This interval must be inside
+    /// the one for which `runs` was filled. If the kinks of all terms are known, each activated term
     /// has the same form on the whole interval.
     fn parts(
         &self,

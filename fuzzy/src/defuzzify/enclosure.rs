@@ -162,7 +162,7 @@ impl EnclosureMethod {
                 for (index, term) in terms.iter().enumerate() {
                     let place = |strength: f64| {
                         let part = smaller(1.0, strength / term.height);
-                        finite(term.membership_function.place(part), self.low, self.high)
+                        finite(term.membership_function.inverse(part), self.low, self.high)
                     };
                     for (&lower, &upper) in lower.of(index).iter().zip(upper.of(index)) {
                         if upper > 0.0 {

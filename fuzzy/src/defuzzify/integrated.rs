@@ -108,7 +108,7 @@ impl IntegratedSet {
                     if bisector.is_none() {
                         let area = piece.area();
                         if sum + area >= half && area > 0.0 {
-                            bisector = Some(piece.where_area_is(half - sum));
+                            bisector = Some(piece.position_of_area(half - sum));
                         }
                         sum += area;
                     }

@@ -137,7 +137,7 @@ impl Piece<'_> {
     }
 
     /// Returns the value up to which the area of the piece is `area`, which must not exceed that of the whole piece.
-    pub(crate) fn where_area_is(&self, area: f64) -> f64 {
+    pub(crate) fn position_of_area(&self, area: f64) -> f64 {
         let width = self.to - self.from;
         if let Some(curve) = self.curve {
             let mean = area / width;
@@ -233,9 +233,9 @@ mod tests {
         assert!((line.area() - curve(1.0, 4.0, &f).area()).abs() < 1e-15);
         // 0.3 d + 0.05 d^2 = area.
         for (area, x) in [(0.0, 1.0), (0.35, 2.0), (1.35, 4.0)] {
-            assert!((line.where_area_is(area) - x).abs() < 1e-15);
-            let other = curve(1.0, 4.0, &f).where_area_is(area);
-            assert!((line.where_area_is(area) - other).abs() < 1e-14);
+            assert!((line.position_of_area(area) - x).abs() < 1e-15);
+            let other = curve(1.0, 4.0, &f).position_of_area(area);
+            assert!((line.position_of_area(area) - other).abs() < 1e-14);
         }
     }
 

@@ -86,7 +86,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_plane_has_one_straight_line() {
+    fn a_plane_has_one_straight_contour() {
         let pieces = pieces(5, 4, |i, _| Some(i as f64 * 10.0), 25.0);
         assert_eq!(pieces.len(), 3);
         let lines = lines(pieces);
@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hill_has_a_closed_line_and_unknown_values_none() {
+    fn a_hill_has_a_closed_contour_and_unknown_values_have_none() {
         let hill = |i: usize, j: usize| {
             let (x, y) = (i as f64 - 5.0, j as f64 - 5.0);
             Some(30.0 - x * x - y * y)

@@ -152,7 +152,7 @@ impl SvgDocument {
     }
 
     /// Adds a title along an axis, rotated clockwise about its middle.
-    pub fn turned(&mut self, (x, y): (f64, f64), degrees: f64, text: &str) {
+    pub fn rotated_text(&mut self, (x, y): (f64, f64), degrees: f64, text: &str) {
         if text.is_empty() {
             return;
         }
@@ -230,7 +230,7 @@ impl SvgDocument {
             self.text((left - 8.0, y + 4.0), Anchor::End, "label", &short(tick));
         }
         self.text((middle, bottom + 36.0), Anchor::Middle, "title", x.1);
-        self.turned((left - 52.0, centre), -90.0, y.1);
+        self.rotated_text((left - 52.0, centre), -90.0, y.1);
     }
 
     /// Adds grid lines at the ticks of the vertical axis.
@@ -242,7 +242,7 @@ impl SvgDocument {
     }
 
     /// Adds coloured squares, each with a text, one below the other.
-    pub(super) fn keys(&mut self, left: f64, top: f64, keys: &[(Colour, String)]) {
+    pub(super) fn legend_entries(&mut self, left: f64, top: f64, keys: &[(Colour, String)]) {
         let most = ((self.width - left - 20.0) / LABEL_WIDTH) as usize;
         for (i, (colour, text)) in keys.iter().enumerate() {
             let y = top + 18.0 * i as f64;

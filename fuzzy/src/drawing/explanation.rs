@@ -244,7 +244,7 @@ pub(super) fn sticks(
     document.axes(frame, (x, ""), (Scale::new(0.0, 1.0), "weight"));
     let keys = numbers.iter();
     let keys: Vec<(Colour, String)> = keys.map(|(_, _, c, text)| (*c, text.clone())).collect();
-    document.keys(frame.right() + 14.0, frame.top, &keys);
+    document.legend_entries(frame.right() + 14.0, frame.top, &keys);
 }
 
 /// Draws the terms of a variable: membership functions, implied sets of rules, a value, and the degrees at it. The
@@ -315,7 +315,7 @@ pub(super) fn terms(
         (distinct_line(i), format!("{}{degree}", term.name))
     });
     let keys: Vec<(Colour, String)> = keys.collect();
-    document.keys(frame.right() + 14.0, frame.top, &keys);
+    document.legend_entries(frame.right() + 14.0, frame.top, &keys);
 }
 
 /// Marks a value over the height of a frame.

@@ -22,7 +22,7 @@ const COLOURS: f64 = 100.0;
 /// Hatched cells (dashed sections of a curve) were filled by interpolation; grey cells have no value.
 pub fn map_svg(slice: &Slice) -> String {
     let mut document = SvgDocument::map();
-    document.heading(Frame::MAP.left, &slice.title(), &slice.held_text());
+    document.heading(Frame::MAP.left, &slice.title(), &slice.fixed_text());
     match &slice.y {
         Some(y) => {
             cells(&mut document, slice, |i, j| {
@@ -54,7 +54,7 @@ pub(super) fn step_colour(slice: &Slice, share: f64) -> Colour {
 
 /// Returns the title of the slice with the values of the fixed inputs.
 pub(super) fn whole_title(slice: &Slice) -> String {
-    [slice.title(), slice.held_text()]
+    [slice.title(), slice.fixed_text()]
         .join(" ")
         .trim_end()
         .to_owned()

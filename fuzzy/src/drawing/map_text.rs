@@ -176,9 +176,9 @@ fn decimals(width: f64) -> usize {
 }
 
 fn heading(slice: &Slice, more: &str) -> String {
-    let held = slice.held_text();
-    let between = if held.is_empty() { "" } else { " " };
-    let heading = format!("{}{more}{between}{held}", slice.title());
+    let fixed = slice.fixed_text();
+    let between = if fixed.is_empty() { "" } else { " " };
+    let heading = format!("{}{more}{between}{fixed}", slice.title());
     visible(&heading).into_owned() + "\n"
 }
 

@@ -13,7 +13,7 @@ use crate::{
 
 /// The distance of a change, as a fraction of the range, below which the text is `just above` or `just below`. It
 /// is the resolution of the search.
-const NEXT: f64 = 1e-9;
+const MIN_SHOWN_DISTANCE: f64 = 1e-9;
 
 /// The maximum number of rules that are listed.
 const MAX_RULES: usize = 20;
@@ -64,7 +64,10 @@ fn row(model: &Model, change: &Change) -> [String; 3] {
     let input = inputs.find(|input| input.name == change.input);
     let width = input.map_or(0.0, |input| input.high - input.low);
     let (at, by) = (shown(change.at), shown(change.by));
-    let at = match (change.is_below, change.by.abs() < NEXT * width) {
+    let at = match (
+        change.is_below,
+        change.by.abs() < MIN_SHOWN_DISTANCE * width,
+    ) {
         (true, true) => format!("just below {at}"),
         (false, true) => format!("just above {at}"),
         (true, false) => format!("from {at} down ({by})"),

@@ -29,7 +29,7 @@ pub fn rules_svg(slice: &Slice, model: &Model) -> String {
     let mut document = SvgDocument::map();
     let frame = Frame::MAP;
     let title = format!("{}, dominant rule", slice.title());
-    document.heading(frame.left, &title, &slice.held_text());
+    document.heading(frame.left, &title, &slice.fixed_text());
     cells(&mut document, slice, |i, j| {
         let rule = slice.cell(i, j).rule?;
         order.binary_search(&rule).ok().map(distinct)
@@ -69,7 +69,7 @@ pub fn rules_svg(slice: &Slice, model: &Model) -> String {
         (distinct(i), format!("{}: {}", rule + 1, terms.join(", ")))
     });
     let left = frame.right() + 12.0;
-    document.keys(left, frame.top, &keys.collect::<Vec<_>>());
+    document.legend_entries(left, frame.top, &keys.collect::<Vec<_>>());
     if order.len() > NAMED {
         let at = (left, frame.top + 18.0 * NAMED as f64 + 10.0);
         let more = format!("and {} more", order.len() - NAMED);

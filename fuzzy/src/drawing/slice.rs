@@ -51,7 +51,7 @@ pub struct Slice {
     /// The input along the vertical axis; `None` if there is only one axis.
     pub y: Option<Axis>,
     /// The fixed inputs with their values.
-    pub held: Vec<(String, f64)>,
+    pub fixed: Vec<(String, f64)>,
     /// The method by which cells without a rule were filled; `None` if they were not.
     pub filling: Option<String>,
     /// The cells: for each point of `x`, one per point of `y`.
@@ -142,10 +142,10 @@ impl Slice {
             range: Scale::new(output.low, output.high),
             x,
             y,
-            held: grid
+            fixed: grid
                 .fixed()
                 .iter()
-                .map(|held| (held.name.to_string(), held.value))
+                .map(|input| (input.name.to_string(), input.value))
                 .collect(),
             filling: None,
             cells: (0..grid.cells()).map(cell).collect(),
@@ -183,7 +183,7 @@ impl Slice {
 
     /// Returns a line with the names of the rule set and the output, and the values of the fixed inputs.
     pub fn heading(&self) -> String {
-        let heading = format!("{} {}", self.title(), self.held_text());
+        let heading = format!("{} {}", self.title(), self.fixed_text());
         visible(heading.trim_end()).into_owned()
     }
 
@@ -197,14 +197,14 @@ impl Slice {
     }
 
     /// Returns the values of the fixed inputs: `at load = 0.5, at_limit = 0`; empty if no input is fixed.
-    pub(super) fn held_text(&self) -> String {
-        let held = self.held.iter();
-        let held: Vec<String> = held
+    pub(super) fn fixed_text(&self) -> String {
+        let fixed = self.fixed.iter();
+        let fixed: Vec<String> = fixed
             .map(|(name, value)| format!("{name} = {}", short(*value)))
             .collect();
-        match held.as_slice() {
+        match fixed.as_slice() {
             [] => String::new(),
-            held => format!("at {}", held.join(", ")),
+            fixed => format!("at {}", fixed.join(", ")),
         }
     }
 

@@ -15,7 +15,7 @@ const MAX_POINTS: usize = 41;
 /// The rotation of the view about the vertical axis, in degrees; it is applied before the tilt.
 const TURN_DEG: f64 = 35.0;
 /// The tilt of the view, in degrees.
-const TIP_DEG: f64 = 28.0;
+const TILT_DEG: f64 = 28.0;
 
 /// The middle of the drawing, in pixels.
 const MIDDLE: (f64, f64) = (280.0, 258.0);
@@ -26,18 +26,18 @@ const SIZE: f64 = 285.0;
 struct View {
     sin_turn: f64,
     cos_turn: f64,
-    sin_tip: f64,
-    cos_tip: f64,
+    sin_tilt: f64,
+    cos_tilt: f64,
 }
 
 impl View {
     fn new() -> View {
-        let (turn, tip) = (TURN_DEG.to_radians(), TIP_DEG.to_radians());
+        let (turn, tilt) = (TURN_DEG.to_radians(), TILT_DEG.to_radians());
         View {
             sin_turn: turn.sin(),
             cos_turn: turn.cos(),
-            sin_tip: tip.sin(),
-            cos_tip: tip.cos(),
+            sin_tilt: tilt.sin(),
+            cos_tilt: tilt.cos(),
         }
     }
 
@@ -45,7 +45,7 @@ impl View {
     fn at(&self, x: f64, y: f64, z: f64) -> (f64, f64) {
         let (x, y, z) = (x - 0.5, y - 0.5, z - 0.5);
         let across = x * self.cos_turn + y * self.sin_turn;
-        let up = z * 0.75 * self.cos_tip + self.depth(x, y) * self.sin_tip;
+        let up = z * 0.75 * self.cos_tilt + self.depth(x, y) * self.sin_tilt;
         (MIDDLE.0 + SIZE * across, MIDDLE.1 - SIZE * up)
     }
 
@@ -60,7 +60,7 @@ pub fn surface_svg(slice: &Slice) -> Option<String> {
     let y = slice.y.as_ref()?;
     let view = View::new();
     let mut document = SvgDocument::map();
-    document.heading(Frame::MAP.left, &slice.title(), &slice.held_text());
+    document.heading(Frame::MAP.left, &slice.title(), &slice.fixed_text());
     floor(&mut document, &view, slice, y);
 
     let columns = thinned(slice.columns(), MAX_POINTS);
@@ -141,6 +141,6 @@ fn floor(document: &mut SvgDocument, view: &View, slice: &Slice, y: &Axis) {
     for ((from, to), title) in [(x_ends, slice.x.title()), (y_ends, y.title())] {
         let middle = ((from.0 + to.0) / 2.0, (from.1 + to.1) / 2.0 + 8.0);
         let along = (to.1 - from.1).atan2(to.0 - from.0).to_degrees();
-        document.turned(middle, along, &title);
+        document.rotated_text(middle, along, &title);
     }
 }

@@ -17,7 +17,7 @@ const MIN_ROWS: usize = 16;
 
 /// The number of rows per task.
 #[cfg(feature = "parallel")]
-const ROWS_A_TASK: usize = 4096;
+const ROWS_PER_TASK: usize = 4096;
 
 impl Engine {
     /// Evaluates one column of values per input, and returns the outcomes row by row: those of row i have the indices
@@ -82,14 +82,14 @@ impl Engine {
             });
         };
         #[cfg(feature = "parallel")]
-        if rows > ROWS_A_TASK {
+        if rows > ROWS_PER_TASK {
             use rayon::prelude::*;
             outcomes
-                .par_chunks_mut(ROWS_A_TASK * outputs)
+                .par_chunks_mut(ROWS_PER_TASK * outputs)
                 .enumerate()
                 .for_each_init(
-                    || self.memory(ROWS_A_TASK),
-                    |memory, (index, outcomes)| task(memory, index * ROWS_A_TASK, outcomes),
+                    || self.memory(ROWS_PER_TASK),
+                    |memory, (index, outcomes)| task(memory, index * ROWS_PER_TASK, outcomes),
                 );
             return Ok(());
         }
@@ -151,18 +151,18 @@ impl Engine {
             });
         };
         #[cfg(feature = "parallel")]
-        if rows > ROWS_A_TASK {
+        if rows > ROWS_PER_TASK {
             use rayon::prelude::*;
             let mut tasks: Vec<Vec<&mut [f64]>> = Vec::new();
-            tasks.resize_with(rows.div_ceil(ROWS_A_TASK), Vec::new);
+            tasks.resize_with(rows.div_ceil(ROWS_PER_TASK), Vec::new);
             for column in values {
-                for (task, part) in tasks.iter_mut().zip(column.chunks_mut(ROWS_A_TASK)) {
+                for (task, part) in tasks.iter_mut().zip(column.chunks_mut(ROWS_PER_TASK)) {
                     task.push(part);
                 }
             }
             tasks.into_par_iter().enumerate().for_each_init(
-                || self.memory(ROWS_A_TASK),
-                |memory, (index, mut values)| task(memory, index * ROWS_A_TASK, &mut values),
+                || self.memory(ROWS_PER_TASK),
+                |memory, (index, mut values)| task(memory, index * ROWS_PER_TASK, &mut values),
             );
             return Ok(());
         }
@@ -296,7 +296,7 @@ struct RowsScratch {
     of_row: Vec<f64>,
 }
 
-/// Returns the values of the rows of a block in a column. Missing rows repeat the first one.
+/// Returns the values of the rows of a block in a column. Missing rows are filled with the value of the first one.
 #[inline(always)]
 fn rows_in(column: &[f64]) -> [f64; ROWS] {
     <[f64; ROWS]>::try_from(column)

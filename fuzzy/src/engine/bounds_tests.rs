@@ -135,7 +135,7 @@ fn equal_bounds_give_the_ordinary_value() {
 }
 
 #[test]
-fn weighted_numbers_by_hand() {
+fn weighted_numbers_equal_values_computed_by_hand() {
     let text = "
 fuzzy: 1
 name: fan
@@ -238,7 +238,7 @@ fn a_name_that_looks_like_a_lower_term_is_not_confused() {
 }
 
 #[test]
-fn the_middle_is_passed_on_in_a_chain() {
+fn a_chain_passes_on_the_middle_of_an_interval() {
     let rules = |first: &str, second: &str| {
         format!(
             "

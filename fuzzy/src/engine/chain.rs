@@ -16,7 +16,7 @@ pub(super) struct Chain {
     /// The same stages as plain arrays. This field and the next two contain the fields of a [`table::Chain`].
     pub(super) flat: OwnedTable,
     pub(super) stages: Vec<table::Stage>,
-    pub(super) places: Vec<u32>,
+    pub(super) indices: Vec<u32>,
 }
 
 /// A stage after the first one.
@@ -48,7 +48,7 @@ impl OwnedStageIndices {
         }
     }
 
-    fn lend(&self) -> table::chain::StageIndices<'_> {
+    fn as_slices(&self) -> table::chain::StageIndices<'_> {
         table::chain::StageIndices {
             reads: &self.reads,
             outputs: &self.outputs,
@@ -69,16 +69,16 @@ impl Chain {
             later: later.collect(),
             flat: OwnedTable::default(),
             stages: Vec::new(),
-            places: Vec::new(),
+            indices: Vec::new(),
         };
-        let (mut flat, mut stages, mut places) = (OwnedTable::default(), Vec::new(), Vec::new());
+        let (mut flat, mut stages, mut all) = (OwnedTable::default(), Vec::new(), Vec::new());
         for (indices, stage) in chain.stages(first) {
-            let [conjunctions, actions_a_cell, first_action, sums] =
+            let [conjunctions, actions_per_cell, first_action, sums] =
                 stage.arrays.conjunctions.code();
             flat.append(&stage.arrays);
             stages.push(table::Stage {
                 conjunctions,
-                actions_a_cell,
+                actions_per_cell,
                 first_action,
                 sums,
                 sizes: stage.arrays.sizes,
@@ -87,11 +87,11 @@ impl Chain {
                 rules: indices.rules.len() as u32,
                 ends: flat.ends(),
             });
-            for indices in [&indices.reads, &indices.outputs, &indices.rules] {
-                places.extend_from_slice(indices);
+            for part in [&indices.reads, &indices.outputs, &indices.rules] {
+                all.extend_from_slice(part);
             }
         }
-        (chain.flat, chain.stages, chain.places) = (flat, stages, places);
+        (chain.flat, chain.stages, chain.indices) = (flat, stages, all);
         chain
     }
 
@@ -148,7 +148,7 @@ impl Engine {
             let evaluate = |inputs: &[f64], own: &mut [Outcome]| {
                 stage.outcomes(scratch, inputs, own);
             };
-            table::chain::stage(indices.lend(), given, outcomes, evaluate, &mut keep);
+            table::chain::stage(indices.as_slices(), given, outcomes, evaluate, &mut keep);
         }
     }
 
@@ -160,7 +160,7 @@ impl Engine {
         Some(table::Chain {
             table: chain.flat.table(),
             stages: &chain.stages,
-            places: &chain.places,
+            indices: &chain.indices,
         })
     }
 }

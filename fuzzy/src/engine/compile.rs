@@ -346,7 +346,7 @@ impl<'m> Compiler<'m> {
         for action in actions().filter(here) {
             counts[action.strength as usize] += 1;
         }
-        if combination != StrengthCombination::Apart {
+        if combination != StrengthCombination::Separate {
             counts.fill(1);
         }
         let mut offsets = vec![0];
@@ -368,7 +368,7 @@ impl<'m> Compiler<'m> {
                 let term = action.strength as usize;
                 action.strength = (first_strength + next[term]) as u32;
                 action.sums = u32::from(combination == StrengthCombination::Sum);
-                if combination == StrengthCombination::Apart {
+                if combination == StrengthCombination::Separate {
                     next[term] += 1;
                 }
             }

@@ -156,7 +156,7 @@ fn fired(context: &ConditionContext<'_>) -> Vec<FiredRule> {
     let mut degrees = vec![0.0; context.model.rules.len()];
     let lower_strength = |rule: &Rule| {
         let operators = context.model.operators_of(rule);
-        let degree = holds(&rule.rule.condition, operators, context, Bound::Lower);
+        let degree = degree_of(&rule.rule.condition, operators, context, Bound::Lower);
         let strength = rule.rule.weight * degree;
         if strength >= context.model.least_strength {
             strength
@@ -172,7 +172,7 @@ fn fired(context: &ConditionContext<'_>) -> Vec<FiredRule> {
             continue;
         }
         let operators = context.model.operators_of(rule);
-        *degree = holds(&rule.rule.condition, operators, context, Bound::Upper);
+        *degree = degree_of(&rule.rule.condition, operators, context, Bound::Upper);
         let activation = context.model.activation_of(rule);
         let (_, strengths) = blocks.entry(rule.block).or_insert((activation, Vec::new()));
         strengths.push(PartialConjunction::new(rule.rule.weight * *degree, index));
@@ -205,16 +205,16 @@ fn fired(context: &ConditionContext<'_>) -> Vec<FiredRule> {
 
 /// Returns a bound of the degree of a condition, computed from its syntax tree. Without type-2 terms both bounds equal
 /// the degree.
-pub(super) fn holds(
+pub(super) fn degree_of(
     condition: &Condition,
     operators: Operators,
     context: &ConditionContext<'_>,
     bound: Bound,
 ) -> f64 {
-    let degree = |part: &Condition| holds(part, operators, context, bound);
+    let degree = |part: &Condition| degree_of(part, operators, context, bound);
     match condition {
-        Condition::Is(proposition) => proposition_holds(proposition, context, bound),
-        Condition::Not(inner) => 1.0 - holds(inner, operators, context, bound.opposite()),
+        Condition::Is(proposition) => degree_of_proposition(proposition, context, bound),
+        Condition::Not(inner) => 1.0 - degree_of(inner, operators, context, bound.opposite()),
         Condition::And(parts) => {
             let joined = parts
                 .iter()
@@ -232,7 +232,7 @@ pub(super) fn holds(
     }
 }
 
-fn proposition_holds(
+fn degree_of_proposition(
     proposition: &Proposition,
     context: &ConditionContext<'_>,
     bound: Bound,
@@ -370,7 +370,7 @@ fn number(
     if output.defuzzifier == Defuzzifier::Tsukamoto {
         let place = term
             .membership_function
-            .place(smaller(1.0, active.strength / term.height));
+            .inverse(smaller(1.0, active.strength / term.height));
         return Some(table::finite(place, variable.low, variable.high));
     }
     match &term.membership_function {

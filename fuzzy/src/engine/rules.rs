@@ -92,7 +92,7 @@ const MAX_CELLS_A_RULE: usize = 32;
 /// with degree 0.
 const MAX_AXES: usize = 6;
 /// The maximum number of actions per cell of a uniform table.
-const MAX_ACTIONS_A_CELL: usize = 2;
+const MAX_ACTIONS_PER_CELL: usize = 2;
 /// The maximum number of steps for which evaluating all rules is faster than finding those that fire.
 const MAX_STEPS_OF_FEW_RULES: usize = 64;
 
@@ -294,20 +294,20 @@ impl OwnedTable {
         }
         let cells = |ends: &[u32]| self.actions.get(ends[0] as usize..ends[1] as usize);
         let cells: Vec<&[Action]> = self.cells.windows(2).filter_map(cells).collect();
-        let actions_a_cell = cells.iter().map(|actions| actions.len()).max()?.max(1);
-        if axes.len() > MAX_AXES || actions_a_cell > MAX_ACTIONS_A_CELL {
+        let actions_per_cell = cells.iter().map(|actions| actions.len()).max()?.max(1);
+        if axes.len() > MAX_AXES || actions_per_cell > MAX_ACTIONS_PER_CELL {
             return None;
         }
         let mut actions = Vec::new();
         for cell in cells {
-            let end = actions.len() + actions_a_cell;
+            let end = actions.len() + actions_per_cell;
             actions.extend(cell);
             actions.resize(end, Action::none(unused));
         }
         // The padded cells replace those of the dense table.
         let first_action = self.cells.first().copied()?;
         self.conjunctions = Conjunctions::Uniform {
-            actions_a_cell: actions_a_cell as u32,
+            actions_per_cell: actions_per_cell as u32,
             first_action,
             sums: self.actions.iter().any(|action| action.sums != 0),
         };

@@ -8,7 +8,7 @@ use core::fmt;
 
 use super::{
     Engine, EvaluateError, Explanation,
-    explain::{ConditionContext, holds},
+    explain::{ConditionContext, degree_of},
 };
 use crate::{
     model::{Operators, Rule, concludes, type2::Bound},
@@ -151,7 +151,7 @@ fn silence(rule: &Rule, context: &ConditionContext<'_>) -> Silence {
         };
     }
     let operators = model.operators_of(rule);
-    let degree = holds(&rule.rule.condition, operators, context, Bound::Upper);
+    let degree = degree_of(&rule.rule.condition, operators, context, Bound::Upper);
     let strength = rule.rule.weight * degree;
     if strength > 0.0 {
         return Silence::Activation { strength };
@@ -172,6 +172,6 @@ fn zero<'c>(
         return condition;
     };
     let mut parts = parts.iter();
-    let first = parts.find(|part| holds(part, operators, context, Bound::Upper) <= 0.0);
+    let first = parts.find(|part| degree_of(part, operators, context, Bound::Upper) <= 0.0);
     first.map_or(condition, |part| zero(part, operators, context))
 }

@@ -26,7 +26,7 @@
 //! |---|---|
 //! | weighted average, weighted sum; product with sum or bounded sum | `Sum` |
 //! | maximum, since every implication is monotone in the strength | `Largest` |
-//! | any other | `Apart` |
+//! | any other | `Separate` |
 //!
 //! # How rules fire
 //!
@@ -65,8 +65,8 @@ use crate::table::{OfMaxima, Outcome, SetDefuzzifier, has_cells_alone};
 /// The method that fires the rules of a stage for a single row.
 #[derive(Debug, Clone)]
 pub(super) enum SingleRowMethod {
-    /// A table of two inputs whose rules are fired, and whose output is defuzzified, with vector
-    /// instructions.
+    /// A table of two inputs that is evaluated with vector instructions: both its rules and its
+    /// defuzzification.
     #[cfg(feature = "simd")]
     Plane(alloc::boxed::Box<Plane>),
     /// A table whose rules are fired with vector instructions.
@@ -121,14 +121,14 @@ pub(super) enum StrengthCombination {
     /// By sum: `sum_r h_r mu = (sum_r h_r) mu`.
     Sum,
     /// No combination: the firing strength of each rule is used separately.
-    Apart,
+    Separate,
 }
 
 impl StrengthCombination {
     pub(super) fn of(method: &Method, operators: Operators) -> Self {
         match method {
             Method::Sugeno { .. } => return StrengthCombination::Sum,
-            Method::Tsukamoto(_) => return StrengthCombination::Apart,
+            Method::Tsukamoto(_) => return StrengthCombination::Separate,
             Method::Partition(_)
             | Method::Layered(_)
             | Method::Moments(_)
@@ -152,7 +152,7 @@ impl StrengthCombination {
                 | Aggregation::Hamacher
                 | Aggregation::NilpotentMaximum,
                 ImplicationEffect::Cut | ImplicationEffect::Scaled | ImplicationEffect::Otherwise,
-            ) => StrengthCombination::Apart,
+            ) => StrengthCombination::Separate,
         }
     }
 }

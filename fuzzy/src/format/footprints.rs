@@ -384,7 +384,7 @@ mod tests {
     }
 
     #[test]
-    fn short_forms_are_pairs() {
+    fn short_forms_equal_the_upper_and_lower_pair() {
         let equal = |short: &str, pair: &str| {
             assert_eq!(read(short).unwrap(), read(pair).unwrap(), "{short}");
         };

@@ -131,7 +131,7 @@ pub(super) fn likely_defuzzifier(variable: &Variable) -> Option<Defuzzifier> {
 }
 
 /// Returns a suggestion for a value of `when_no_rule_fires` that is a word of another program.
-pub(super) fn meant_by(word: &str) -> Option<String> {
+pub(super) fn suggestion_for_word(word: &str) -> Option<String> {
     let is = |words: &[&str]| words.iter().any(|known| word.eq_ignore_ascii_case(known));
     if is(&["keep", "hold", "last", "nc", "no_change"]) {
         return Some("did you mean `previous`?".into());

@@ -92,7 +92,7 @@ pub(super) fn read(
 
 const HELP: &str = "write `IF input IS term THEN output IS term`, or remove the entry";
 
-const BEATEN: &str = "{term: high, degree: 0.4, support: 3}";
+const REJECTED_EXAMPLE: &str = "{term: high, degree: 0.4, support: 3}";
 
 /// Returns whether an entry begins with a word that cannot begin a rule, so that it continues the previous entry.
 fn continues(item: &Node) -> bool {
@@ -171,7 +171,7 @@ fn one(
     found.note = optional_text(&fields, "note", findings);
     if let Some(node) = fields.get("against") {
         let what = format!("`against` of {what}");
-        let help = format!("write `against: [{BEATEN}]`");
+        let help = format!("write `against: [{REJECTED_EXAMPLE}]`");
         let items = node.items(&what, &help, findings).unwrap_or_default();
         for item in items {
             if let Some((rejected, term, degree)) = rejected(&what, item, findings) {
@@ -245,7 +245,7 @@ fn rejected(
     node: &Node,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<(RejectedConsequent, Range<usize>, Range<usize>)> {
-    let help = &format!("write `{BEATEN}`");
+    let help = &format!("write `{REJECTED_EXAMPLE}`");
     let fields = node.fields(what, &["term", "degree", "support"], help, findings)?;
     let term = fields.require("term", help, findings);
     let term_span = term.map_or(0..0, |node| node.span.clone());

@@ -57,7 +57,7 @@ pub(super) fn read(
     }
     if let Some(second) = shapes.next() {
         let beside = footprints::KEYS.into_iter().chain(["height"]);
-        if let Some(key) = foreign::meant(second.key, beside.clone())
+        if let Some(key) = foreign::equivalents(second.key, beside.clone())
             .first()
             .copied()
             .or_else(|| nearest(second.key, beside))
@@ -106,7 +106,7 @@ pub(super) fn read(
 fn upper_and_lower(fields: &Fields<'_>) -> Option<String> {
     let entries = fields.entries().iter();
     let pairs = entries.filter_map(|entry| {
-        let here = foreign::meant(entry.key, ["upper", "lower"]);
+        let here = foreign::equivalents(entry.key, ["upper", "lower"]);
         Some(format!("`{}` in place of `{}`", here.first()?, entry.key))
     });
     let pairs: Vec<String> = pairs.collect();

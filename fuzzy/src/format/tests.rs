@@ -322,7 +322,7 @@ proptest! {
 }
 
 #[test]
-fn words_of_other_programs_are_answered_with_ours() {
+fn words_of_other_programs_give_suggestions() {
     fn words<T>(table: &[(&'static str, T)]) -> Vec<&'static str> {
         table.iter().map(|(word, _)| *word).collect()
     }

@@ -6,8 +6,8 @@ use core::ops::Range;
 use super::{
     Spans, TermSpans, VariableSpans, footprints,
     notation::{
-        bare_numbers, colons_without_space, likely_defuzzifier, meant_by, other_terms,
-        peaks_in_list,
+        bare_numbers, colons_without_space, likely_defuzzifier, other_terms, peaks_in_list,
+        suggestion_for_word,
     },
     optional_text, steps,
     terms::{terms, unread},
@@ -279,7 +279,7 @@ fn no_rule_fires(
     if let Some(finding) = findings.get_mut(before) {
         let suggested = finding.help.take();
         let suggested = suggested.filter(|help| help.starts_with("did you mean"));
-        let meant = node.as_text().and_then(meant_by).or(suggested);
+        let meant = node.as_text().and_then(suggestion_for_word).or(suggested);
         finding.help = Some(meant.unwrap_or_else(|| NO_RULE_HELP.into()));
     }
     found

@@ -378,7 +378,7 @@ fn quoted(rest: &str, quote: char) -> ParseResult<'_, String> {
 const HEDGES: [&str; 4] = ["very", "somewhat", "extremely", "seldom"];
 
 /// The suggestion for conditional expressions such as `c ? a : b`, which formulas do not support.
-const IF: &str =
+const CONDITIONAL_HELP: &str =
     "a comparison is 1 or 0: for a if c is true, else b, write `(c) * a + (1 - (c)) * b`";
 
 /// Returns whether a number with `%` is before this position, as in `50% * x`.
@@ -460,7 +460,7 @@ impl FormulaMistake<'_> {
                     "=" if is_plain_name(text.get(..start).unwrap_or("").trim()) => {
                         "write the right side only, or `==` to compare"
                     }
-                    "?" | ":" => IF,
+                    "?" | ":" => CONDITIONAL_HELP,
                     _ if before.is_some_and(|word| HEDGES.contains(&word)) => {
                         "a formula has no hedges: write one in a rule, `IF input IS very term`"
                     }
@@ -495,7 +495,7 @@ impl FormulaMistake<'_> {
                 let functions = Operation::ALL.iter();
                 let functions = functions.filter(|(operation, ..)| operation.binds().is_none());
                 finding.help = match name.eq_ignore_ascii_case("if") {
-                    true => Some(IF.into()),
+                    true => Some(CONDITIONAL_HELP.into()),
                     false => {
                         // Functions of other languages have a prefix: `Math.exp`, `np.exp`.
                         let bare = name.rsplit('.').next().unwrap_or(name);

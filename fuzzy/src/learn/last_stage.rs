@@ -2,7 +2,7 @@
 
 use alloc::{collections::BTreeSet, string::String, vec::Vec};
 
-use super::{LearnError, Refusal, check};
+use super::{LearnError, SampleError, check};
 use crate::{
     engine::Engine,
     model::{Model, Rule},
@@ -117,11 +117,11 @@ impl LastStage {
     ///
     /// # Errors
     /// A value is not finite or outside its range, or an output that is read has no value.
-    pub fn values(&self, sample: &[f64]) -> Result<Vec<f64>, Refusal> {
+    pub fn values(&self, sample: &[f64]) -> Result<Vec<f64>, SampleError> {
         let Some(before) = &self.before else {
             return Ok(sample.to_vec());
         };
-        let wrong_number = || Refusal::WrongNumber {
+        let wrong_number = || SampleError::WrongNumber {
             expected: self.whole.inputs.len() + 1,
             got: sample.len(),
         };
@@ -135,7 +135,7 @@ impl LastStage {
             None => {
                 let output = *pick - inputs.len();
                 let value = outcomes.get(output).and_then(|outcome| outcome.value());
-                value.ok_or_else(|| Refusal::NoValue {
+                value.ok_or_else(|| SampleError::NoValue {
                     variable: before.output_names().nth(output).unwrap_or_default().into(),
                 })
             }

@@ -31,7 +31,7 @@ use consequents::{Consequents, highest};
 pub use last_stage::LastStage;
 #[doc(hidden)]
 pub use settings::bad_weight;
-pub use settings::{Direction, LearnError, Refusal, Resolution, Settings, WEIGHTS};
+pub use settings::{Direction, LearnError, Resolution, SampleError, Settings, WEIGHTS};
 use sum::Sum;
 
 /// A learner, which collects samples and derives rules from them.
@@ -173,18 +173,18 @@ impl Learner {
     ///
     /// # Errors
     /// The sample is invalid. It is not added.
-    pub fn add(&mut self, values: &[f64], weight: f64) -> Result<(), Refusal> {
+    pub fn add(&mut self, values: &[f64], weight: f64) -> Result<(), SampleError> {
         let Some((output, inputs)) = values
             .split_last()
             .filter(|(_, inputs)| inputs.len() == self.model.inputs.len())
         else {
-            return Err(Refusal::WrongNumber {
+            return Err(SampleError::WrongNumber {
                 expected: self.model.inputs.len() + 1,
                 got: values.len(),
             });
         };
         if !WEIGHTS.contains(&weight) {
-            return Err(Refusal::Weight { weight });
+            return Err(SampleError::Weight { weight });
         }
         let Some(consequent) = self.model.outputs.first().map(|o| &o.variable) else {
             return Ok(());
@@ -196,10 +196,11 @@ impl Learner {
         let mut antecedent = vec![0; inputs.len()];
         let variables = self.model.inputs.iter().zip(inputs);
         for (index, (variable, value)) in antecedent.iter_mut().zip(variables) {
-            let (term, membership) = highest(variable, *value).ok_or_else(|| Refusal::NoTerm {
-                variable: variable.name.clone(),
-                value: *value,
-            })?;
+            let (term, membership) =
+                highest(variable, *value).ok_or_else(|| SampleError::NoTerm {
+                    variable: variable.name.clone(),
+                    value: *value,
+                })?;
             *index = term;
             degree *= membership;
         }
@@ -211,7 +212,7 @@ impl Learner {
             (_, Resolution::Mean) => (self.consequents.nearest(consequent, *output), 1.0),
             (Some(vote), _) => vote,
             (None, _) => {
-                return Err(Refusal::NoTerm {
+                return Err(SampleError::NoTerm {
                     variable: consequent.name.clone(),
                     value: *output,
                 });
@@ -246,14 +247,14 @@ impl Learner {
     }
 }
 
-fn check(variable: &Variable, value: f64) -> Result<(), Refusal> {
+fn check(variable: &Variable, value: f64) -> Result<(), SampleError> {
     if !value.is_finite() {
-        return Err(Refusal::NotFinite {
+        return Err(SampleError::NotFinite {
             variable: variable.name.clone(),
         });
     }
     if value < variable.low || value > variable.high {
-        return Err(Refusal::OutOfRange {
+        return Err(SampleError::OutOfRange {
             variable: variable.name.clone(),
             value,
             low: variable.low,

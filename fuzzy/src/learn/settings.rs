@@ -199,7 +199,7 @@ impl LearnError {
 /// The error for an invalid sample.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub enum Refusal {
+pub enum SampleError {
     /// The number of values differs from the number of variables.
     WrongNumber {
         /// The number of inputs plus one for the output.
@@ -242,14 +242,14 @@ pub enum Refusal {
     },
 }
 
-impl core::fmt::Display for Refusal {
+impl core::fmt::Display for SampleError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
-            Refusal::WrongNumber { expected, got } => {
+            SampleError::WrongNumber { expected, got } => {
                 write!(f, "{got} values for {expected} variables")
             }
-            Refusal::NotFinite { variable } => write!(f, "`{variable}` is not a finite number"),
-            Refusal::OutOfRange {
+            SampleError::NotFinite { variable } => write!(f, "`{variable}` is not a finite number"),
+            SampleError::OutOfRange {
                 variable,
                 value,
                 low,
@@ -261,18 +261,18 @@ impl core::fmt::Display for Refusal {
                 short(*low),
                 short(*high)
             ),
-            Refusal::NoTerm { variable, value } => {
+            SampleError::NoTerm { variable, value } => {
                 write!(f, "every term of `{variable}` is 0 at {}", short(*value))
             }
-            Refusal::NoValue { variable } => {
+            SampleError::NoValue { variable } => {
                 write!(f, "no rule gives `{variable}` a value")
             }
-            Refusal::Weight { weight } => f.write_str(&bad_weight(*weight, "a number")),
+            SampleError::Weight { weight } => f.write_str(&bad_weight(*weight, "a number")),
         }
     }
 }
 
-impl core::error::Error for Refusal {}
+impl core::error::Error for SampleError {}
 
 /// Formats a number; very small and very large ones in scientific notation.
 fn short(x: f64) -> String {

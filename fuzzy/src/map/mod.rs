@@ -56,7 +56,7 @@ struct Cell {
 }
 
 /// The number of cells per batch, chosen to fit the cache.
-const CELLS_A_TASK: usize = 512;
+const CELLS_PER_TASK: usize = 512;
 
 /// The state that evaluates batches of cells.
 struct Worker<'a> {
@@ -72,7 +72,7 @@ struct Worker<'a> {
 
 impl<'a> Worker<'a> {
     fn new(engine: &'a Engine, grid: &'a Grid, output: usize) -> Self {
-        let mut columns = vec![vec![0.0; CELLS_A_TASK]; engine.input_names().len()];
+        let mut columns = vec![vec![0.0; CELLS_PER_TASK]; engine.input_names().len()];
         for fixed in grid.fixed() {
             if let Some(column) = columns.get_mut(fixed.input) {
                 column.fill(fixed.value);
@@ -86,7 +86,7 @@ impl<'a> Worker<'a> {
             engine,
             grid,
             output,
-            memory: engine.memory(CELLS_A_TASK),
+            memory: engine.memory(CELLS_PER_TASK),
             coordinates: coordinates.collect(),
             columns,
         }
@@ -180,16 +180,16 @@ impl DecisionMap {
         #[cfg(feature = "parallel")]
         {
             use rayon::prelude::*;
-            let tasks = cells.par_chunks_mut(CELLS_A_TASK).enumerate();
+            let tasks = cells.par_chunks_mut(CELLS_PER_TASK).enumerate();
             tasks.for_each_init(worker, |worker, (task, cells)| {
-                worker.fill(task * CELLS_A_TASK, cells);
+                worker.fill(task * CELLS_PER_TASK, cells);
             });
         }
         #[cfg(not(feature = "parallel"))]
         {
             let mut worker = worker();
-            for (task, cells) in cells.chunks_mut(CELLS_A_TASK).enumerate() {
-                worker.fill(task * CELLS_A_TASK, cells);
+            for (task, cells) in cells.chunks_mut(CELLS_PER_TASK).enumerate() {
+                worker.fill(task * CELLS_PER_TASK, cells);
             }
         }
         Ok(DecisionMap {

@@ -94,7 +94,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn flat_tops_count_from_both_ends_and_curves_from_their_highest_value() {
+    fn peaks_are_the_ends_of_plateaus_and_the_maxima_of_curves() {
         let peaks_of =
             |term: MembershipFunction| peaks(&Variable::new("x", 0.0, 1.0).term("a", term));
         let flat = MembershipFunction::Trapezoid {

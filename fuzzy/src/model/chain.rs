@@ -256,7 +256,7 @@ fn is_selected(model: &Model, rule: &Rule) -> bool {
 /// Returns the outputs in an order in which each one follows those it reads. If there are cycles, returns these as the
 /// error: in each cycle, every output reads the next one, and the last one reads the first.
 pub(crate) fn order(reads: &[Vec<OutputReference>]) -> Result<Vec<usize>, Vec<Vec<usize>>> {
-    let (mut order, mut circles) = (Vec::new(), Vec::new());
+    let (mut order, mut cycles) = (Vec::new(), Vec::new());
     let mut placed = vec![false; reads.len()];
     let open = |output: usize, placed: &[bool]| {
         let mut reads = reads.get(output)?.iter().map(|read| read.output);
@@ -281,17 +281,17 @@ pub(crate) fn order(reads: &[Vec<OutputReference>]) -> Result<Vec<usize>, Vec<Ve
         for output in &path {
             placed[*output] = true;
         }
-        circles.push(path);
+        cycles.push(path);
     }
-    if circles.is_empty() {
+    if cycles.is_empty() {
         Ok(order)
     } else {
-        Err(circles)
+        Err(cycles)
     }
 }
 
 /// Returns an error for each cycle of outputs that read one another; the message lists the whole cycle.
-pub(crate) fn circles(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
+pub(crate) fn cycle_errors(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
     let reads = reads_of_all(model, spans);
     let name = |output: usize| model.outputs.get(output).map(|o| &o.variable.name);
     let step = |by: usize, output: usize| {
@@ -310,10 +310,10 @@ pub(crate) fn circles(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
         let text = format!("`{}` reads `{}`{rule}", name(by)?, name(output)?);
         Some((text, read.span.clone()))
     };
-    let circles = order(&reads).err().unwrap_or_default().into_iter();
-    let circles = circles.map(|circle| {
-        let next = circle.iter().cycle().skip(1);
-        let steps = circle.iter().zip(next);
+    let cycles = order(&reads).err().unwrap_or_default().into_iter();
+    let errors = cycles.map(|cycle| {
+        let next = cycle.iter().cycle().skip(1);
+        let steps = cycle.iter().zip(next);
         let steps: Vec<(String, Range<usize>)> = steps
             .filter_map(|(by, output)| step(*by, *output))
             .collect();
@@ -331,7 +331,7 @@ pub(crate) fn circles(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
             })
             .help("let one of them read only inputs, or conclude an output with another name")
     });
-    circles.collect()
+    errors.collect()
 }
 
 /// Returns the stages of a model in the order of evaluation: the first one, and the later ones. A model without chains

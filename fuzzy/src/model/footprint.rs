@@ -247,12 +247,12 @@ pub(crate) fn lagging(
             top,
         },
         F::SShape { top, .. } => F::SShape {
-            foot: function.place(left_lag),
+            foot: function.inverse(left_lag),
             top,
         },
         F::ZShape { top, .. } => F::ZShape {
             top,
-            foot: function.place(right_lag),
+            foot: function.inverse(right_lag),
         },
         F::PiShape {
             left,
@@ -264,14 +264,14 @@ pub(crate) fn lagging(
                 foot: left,
                 top: left_top,
             }
-            .place(left_lag),
+            .inverse(left_lag),
             left_top,
             right_top,
             right: F::ZShape {
                 top: right_top,
                 foot: right,
             }
-            .place(right_lag),
+            .inverse(right_lag),
         },
         _ => return Err(unsupported(function)),
     };
@@ -307,7 +307,7 @@ mod tests {
     const RANGE: (f64, f64) = (0.0, 40.0);
 
     #[test]
-    fn by_hand() {
+    fn blurred_terms_equal_values_computed_by_hand() {
         let triangle = F::Triangle {
             left: 4.0,
             peak: 8.0,
@@ -353,7 +353,7 @@ mod tests {
     }
 
     #[test]
-    fn uncertain_means_and_deviations_by_hand() {
+    fn uncertain_means_and_deviations_equal_values_computed_by_hand() {
         let (upper, lower) = uncertain_gaussian((-1.0, 3.0), (2.0, 4.0), "wind \"x\"").unwrap();
         let degree = |x: f64, mean: f64, sd: f64| libm::exp(-0.5 * ((x - mean) / sd).powi(2));
         for x in [-9.0_f64, -1.0, 0.5, 1.0, 2.0, 3.0, 7.0] {
@@ -366,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn lags_by_hand() {
+    fn lags_equal_values_computed_by_hand() {
         let of = |function: F, lag| lagging(&function, 0.8, lag).unwrap();
         let triangle = F::Triangle {
             left: 0.0,

@@ -14,7 +14,7 @@ mod conclusion;
 mod condition;
 mod words;
 
-use conclusion::{behind_conclusion, weight_advice};
+use conclusion::{after_conclusion, weight_advice};
 use condition::{is_missing, is_phrase, two_words};
 use words::{at_start, connective, found_here, name_is_missing, sign};
 
@@ -96,7 +96,7 @@ impl RuleMistake<'_> {
                     Some(word) => Some(format!("did you mean `{word}`?")),
                     None if words.contains(&"IF") => Some(at_start(rest)),
                     None if words.contains(&")") => sign(rest).or_else(|| connective(before, rest)),
-                    None => sign(rest).or_else(|| behind_conclusion(before, rest, words.is_empty())),
+                    None => sign(rest).or_else(|| after_conclusion(before, rest, words.is_empty())),
                 };
                 with_help(diagnostic, help)
             }

@@ -52,7 +52,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn ends_and_values() {
+    fn exponentials_at_the_ends_and_at_known_values() {
         assert_eq!(exp_of_minus(0.0), 1.0);
         assert_eq!(exp_of_minus(1e-300), 1.0);
         assert_eq!(exp_of_minus(f64::INFINITY), 0.0);

@@ -174,7 +174,7 @@ impl<const L: usize> FiringConsumer<L> for FiringStrengths<'_, L> {
 
     #[inline(always)]
     fn act_in_cells(&mut self, cells: &Cells<'_>, reached: &mut [PartialConjunction<L>]) {
-        if let ([one], 1, false) = (&mut *self.strongest, cells.actions_a_cell, cells.sums) {
+        if let ([one], 1, false) = (&mut *self.strongest, cells.actions_per_cell, cells.sums) {
             *one = fire_cells(cells, reached, self.strengths, self.least);
             return;
         }

@@ -111,7 +111,7 @@ impl Activation {
                 strength,
             } => {
                 for rule in rules {
-                    if !comparison.holds(rule.degree[0], strength, least) {
+                    if !comparison.is_true(rule.degree[0], strength, least) {
                         rule.degree[0] = 0.0;
                     }
                 }
@@ -130,7 +130,7 @@ fn first<'a>(
     let mut left = count;
     for rule in rules {
         let fires =
-            rule.degree[0] >= least && Comparison::AtLeast.holds(rule.degree[0], at_least, least);
+            rule.degree[0] >= least && Comparison::AtLeast.is_true(rule.degree[0], at_least, least);
         if fires && left > 0 {
             left -= 1;
         } else {
@@ -141,7 +141,7 @@ fn first<'a>(
 
 impl Comparison {
     /// Returns whether the comparison is true. Numbers whose difference is below `least` are equal.
-    fn holds(self, strength: f64, threshold: f64, least: f64) -> bool {
+    fn is_true(self, strength: f64, threshold: f64, least: f64) -> bool {
         let equal = libm::fabs(strength - threshold) < least;
         match self {
             Comparison::Below => !equal && strength < threshold,
@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn values_by_hand() {
+    fn activations_equal_values_computed_by_hand() {
         const ALL: [f64; 5] = [0.25, 1e-7, 0.75, 0.5, 0.75];
         for (activation, expected) in [
             (Activation::General, ALL),

@@ -12,18 +12,18 @@ pub struct Stage {
     /// The code of the data structure that finds the firing rules: see [`Conjunctions::code`].
     pub conjunctions: u32,
     /// The number of actions per cell; uniform tables only.
-    pub actions_a_cell: u32,
+    pub actions_per_cell: u32,
     /// The index of the first action of the first cell; uniform tables only.
     pub first_action: u32,
     /// 1 if an action sums firing strengths, else 0; uniform tables only.
     pub sums: u32,
     /// The sizes of the scratch memory of the stage.
     pub sizes: Sizes,
-    /// The number of outputs that the stage reads. Their indices are in [`Chain::places`].
+    /// The number of outputs that the stage reads. Their indices are in [`Chain::indices`].
     pub reads: u32,
-    /// The number of outputs of the stage. Their indices in the model follow in [`Chain::places`].
+    /// The number of outputs of the stage. Their indices in the model follow in [`Chain::indices`].
     pub outputs: u32,
-    /// The number of rules of the stage. Their indices in the model follow in [`Chain::places`].
+    /// The number of rules of the stage. Their indices in the model follow in [`Chain::indices`].
     pub rules: u32,
     /// The end of the stage's part of each array. The part begins at the end of the previous
     /// stage's part.
@@ -47,7 +47,7 @@ macro_rules! define {
                     or: self.or,
                     conjunctions: Conjunctions::from_code([
                         stage.conjunctions,
-                        stage.actions_a_cell,
+                        stage.actions_per_cell,
                         stage.first_action,
                         stage.sums,
                     ])?,
@@ -66,10 +66,10 @@ impl Conjunctions {
     pub const fn code(self) -> [u32; 4] {
         match self {
             Conjunctions::Uniform {
-                actions_a_cell,
+                actions_per_cell,
                 first_action,
                 sums,
-            } => [0, actions_a_cell, first_action, sums as u32],
+            } => [0, actions_per_cell, first_action, sums as u32],
             Conjunctions::Dense => [1, 0, 0, 0],
             Conjunctions::Trie => [2, 0, 0, 0],
         }
@@ -77,10 +77,10 @@ impl Conjunctions {
 
     /// Returns the variant with the given code; `None` if the code is invalid.
     pub const fn from_code(code: [u32; 4]) -> Option<Conjunctions> {
-        let [which, actions_a_cell, first_action, sums] = code;
+        let [which, actions_per_cell, first_action, sums] = code;
         Some(match which {
             0 => Conjunctions::Uniform {
-                actions_a_cell,
+                actions_per_cell,
                 first_action,
                 sums: sums != 0,
             },
@@ -112,7 +112,7 @@ pub struct Chain<'a> {
     /// The stages.
     pub stages: &'a [Stage],
     /// For each stage, the indices in the model of the outputs that it reads, of its outputs, and of its rules.
-    pub places: &'a [u32],
+    pub indices: &'a [u32],
 }
 
 /// The memory that an evaluation needs in addition to the scratch memory.
@@ -139,11 +139,11 @@ impl<'a> Chain<'a> {
     /// damaged stage.
     pub fn parts(self) -> impl Iterator<Item = (Table<'a>, StageIndices<'a>)> {
         let mut first = Ends::default();
-        let mut places = self.places;
+        let mut unread = self.indices;
         self.stages.iter().map_while(move |stage| {
             let mut take = |count: u32| {
-                let (taken, rest) = places.split_at_checked(count as usize)?;
-                places = rest;
+                let (taken, rest) = unread.split_at_checked(count as usize)?;
+                unread = rest;
                 Some(taken)
             };
             let indices = StageIndices {
@@ -292,7 +292,7 @@ impl<'a> Chain<'a> {
     }
 
     /// Returns those outputs without a closed form that other outputs read or that have the index `risk`.
-    pub fn open(self, risk: usize) -> impl Iterator<Item = usize> + use<'a> {
+    pub fn outputs_without_closed_form(self, risk: usize) -> impl Iterator<Item = usize> + use<'a> {
         let is_read = move |output: u32| {
             let mut reads = self.parts().flat_map(|(_, indices)| indices.reads);
             output as usize == risk || reads.any(|read| *read == output)

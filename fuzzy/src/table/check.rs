@@ -82,10 +82,10 @@ impl Table<'_> {
         }
         match self.conjunctions {
             Conjunctions::Uniform {
-                actions_a_cell,
+                actions_per_cell,
                 first_action,
                 ..
-            } => self.check_uniform(u64::from(actions_a_cell), u64::from(first_action))?,
+            } => self.check_uniform(u64::from(actions_per_cell), u64::from(first_action))?,
             Conjunctions::Dense => self.check_dense()?,
             Conjunctions::Trie => self.check_trie(literals)?,
         }
@@ -212,7 +212,7 @@ impl Table<'_> {
         Ok(())
     }
 
-    fn check_uniform(&self, actions_a_cell: u64, first_action: u64) -> Result<(), DamagedArray> {
+    fn check_uniform(&self, actions_per_cell: u64, first_action: u64) -> Result<(), DamagedArray> {
         let mut last_cell = 0;
         for axis in self.axes {
             let cuts = self
@@ -228,7 +228,7 @@ impl Table<'_> {
             require((axis.input as usize) < self.inputs.len(), "axes")?;
         }
         require(last_cell <= u64::from(u32::MAX), "axes")?;
-        let end = (last_cell + 1).saturating_mul(actions_a_cell);
+        let end = (last_cell + 1).saturating_mul(actions_per_cell);
         require(
             first_action.saturating_add(end) <= self.actions.len() as u64,
             "actions",

@@ -275,7 +275,7 @@ pub(super) fn area_and_centroid<A: Arrays>(
 /// Works like [`closed`]. It is a separate function because its code would otherwise take registers from the code for
 /// partitions.
 #[inline(never)]
-pub(super) fn closed_apart<A: Arrays, const L: usize>(
+pub(super) fn closed_outlined<A: Arrays, const L: usize>(
     table: &A,
     output: &Output,
     strengths: &[[f64; L]],
@@ -380,7 +380,7 @@ fn tsukamoto(
         if strength > 0.0 {
             let points = &points[curve.first_point as usize..curve.end_point as usize];
             let part = smaller(1.0, strength / curve.height);
-            let place = curve.kind.place(&curve.parameters, points, part);
+            let place = curve.kind.inverse(&curve.parameters, points, part);
             sum += strength * finite(place, output.low, output.high);
             total += strength;
         }

@@ -78,7 +78,7 @@ mod tests {
     };
 
     #[test]
-    fn by_hand() {
+    fn type_reductions_equal_values_computed_by_hand() {
         assert_eq!(closed(TypeReduction::NieTan, BOTH), Some((4.5, 4.5)));
         assert_eq!(
             closed(TypeReduction::BegianMelekMendel, BOTH),

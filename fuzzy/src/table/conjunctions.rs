@@ -68,15 +68,15 @@ impl<const L: usize> PartialConjunction<L> {
 /// The cells of a uniform table.
 pub(super) struct Cells<'a> {
     pub(super) actions: &'a [Action],
-    pub(super) actions_a_cell: usize,
+    pub(super) actions_per_cell: usize,
     pub(super) sums: bool,
 }
 
 impl Cells<'_> {
     #[inline(always)]
     pub(super) fn actions_of(&self, cell: u32) -> &[Action] {
-        let first = cell as usize * self.actions_a_cell;
-        &self.actions[first..first + self.actions_a_cell]
+        let first = cell as usize * self.actions_per_cell;
+        &self.actions[first..first + self.actions_per_cell]
     }
 }
 

@@ -236,13 +236,13 @@ fn fire_with<A: Arrays, const L: usize, const CELLS: bool>(
     } = search;
     match table.conjunctions() {
         Conjunctions::Uniform {
-            actions_a_cell,
+            actions_per_cell,
             first_action,
             sums,
         } => {
             let cells = Cells {
                 actions: &table.actions()[first_action as usize..],
-                actions_a_cell: actions_a_cell as usize,
+                actions_per_cell: actions_per_cell as usize,
                 sums,
             };
             fire_uniform(table, &cells, values, partial, &and, firing);

@@ -131,7 +131,7 @@ impl Flank {
     }
 
     /// Returns the value at which the flank has a degree, which must be between the degrees of its ends.
-    pub(crate) fn where_degree_is(&self, degree: f64) -> f64 {
+    pub(crate) fn position_of_degree(&self, degree: f64) -> f64 {
         let [a, b, c, d] = self.parameters;
         let level = smaller(1.0, degree / self.height);
         // The side of the shape's middle on which the flank is: -1 for left, 1 for right.
@@ -211,7 +211,7 @@ impl Flank {
         }
         let (foot, low) = self.foot();
         let x = if low < strength {
-            self.where_degree_is(strength)
+            self.position_of_degree(strength)
         } else {
             foot
         };

@@ -102,7 +102,7 @@ pub use set::{FuzzySet, OfMaxima, Section, SetDefuzzifier, SetTerm, Strand};
 pub use crate::shape::ShapeKind;
 
 use crate::rows::{each, set};
-use closed::{closed, closed_apart, partition};
+use closed::{closed, closed_outlined, partition};
 pub(crate) use closed::{number, value_in_row};
 pub(crate) use firing::{fire, fire_row, has_cells_alone};
 use operators::{larger, smaller};
@@ -117,7 +117,7 @@ pub enum Conjunctions {
     /// A table with a cell for each combination of terms. On each axis exactly two terms are evaluated.
     Uniform {
         /// The number of actions of each cell.
-        actions_a_cell: u32,
+        actions_per_cell: u32,
         /// The index of the first action of the first cell.
         first_action: u32,
         /// Whether any action sums firing strengths.
@@ -424,7 +424,7 @@ fn fill<A, N, P, S, const L: usize>(
         partition(table, output, strengths, values, Pair::cut);
         true
     } else if L == 1 {
-        closed_apart(table, output, strengths, bases, inputs, values)
+        closed_outlined(table, output, strengths, bases, inputs, values)
     } else {
         closed(table, output, strengths, bases, inputs, values)
     };

@@ -326,7 +326,7 @@ mod tests {
     const DEGREES: [f64; 9] = [0.0, 1e-300, 1e-9, 0.1, 0.3, 0.5, 0.75, 1.0 - 1e-16, 1.0];
 
     #[test]
-    fn values_by_hand() {
+    fn norms_equal_values_computed_by_hand() {
         for (and, first, second) in CONJUNCTIONS {
             assert!((and.of(0.5, 0.75) - first).abs() < 1e-15, "{and:?}");
             assert!((and.of(0.25, 0.5) - second).abs() < 1e-15, "{and:?}");

@@ -255,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn averages_by_hand() {
+    fn averages_equal_values_computed_by_hand() {
         // The weights of 0 and 10 lie in [1, 3]: 1 * 10 / 4 and 3 * 10 / 4.
         let two = points(&[(10.0, 1.0, 3.0), (0.0, 1.0, 3.0)]);
         assert_eq!(average(two), Some((2.5, 7.5)));
@@ -340,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn sums_by_hand() {
+    fn sums_equal_values_computed_by_hand() {
         let two = points(&[(10.0, 0.25, 0.5), (-4.0, 0.0, 1.0)]);
         assert_eq!(sum(two), Some((2.5 - 4.0, 5.0)));
         assert_eq!(sum(points(&[])), None);

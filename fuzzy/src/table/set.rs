@@ -291,7 +291,7 @@ impl<'t> SetArrays<'t> {
                     break;
                 }
                 if low < level {
-                    let x = flank.where_degree_is(level);
+                    let x = flank.position_of_degree(level);
                     leave(&mut from, &mut to, x, level, Some(level));
                 }
             }
@@ -301,7 +301,7 @@ impl<'t> SetArrays<'t> {
                 return;
             }
             if low < strength {
-                let x = flank.where_degree_is(strength);
+                let x = flank.position_of_degree(strength);
                 leave(&mut from, &mut to, x, strength, None);
             }
             level = strength;

@@ -146,7 +146,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_number_that_is_meant_is_named() {
+    fn advice_names_the_intended_number() {
         for (text, advice) in [
             ("20,5", "write a decimal point: `20.5`"),
             ("0,125", "write a decimal point: `0.125`"),

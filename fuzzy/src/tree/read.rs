@@ -12,7 +12,7 @@ use super::{
     number::{number_advice, share_of_percentage},
 };
 use crate::{
-    diagnostic::{Diagnostic, duplicate, either, meant, suggest},
+    diagnostic::{Diagnostic, duplicate, either, likely_candidates, suggest},
     foreign,
 };
 
@@ -182,8 +182,8 @@ impl Node {
             if !known.contains(&entry.key) {
                 let message = format!("{what} has no key `{}`", entry.key);
                 let mut finding = Diagnostic::error("unknown-key", entry.key_span.clone(), message);
-                let meant = meant(entry.key, known);
-                finding.help = match foreign::elsewhere(entry.key) {
+                let meant = likely_candidates(entry.key, known);
+                finding.help = match foreign::belongs_elsewhere(entry.key) {
                     Some(help) if meant.is_empty() => Some(help.into()),
                     // `window_s: 2,5` in braces is parsed as a key `5` without a value.
                     _ if entry.is_rest_of_a_number() => entries

@@ -371,7 +371,7 @@ impl Validator<'_> {
                 let message = format!("{what} has a coefficient for an input called `constant`");
                 self.error("wrong-term", here, message, "rename the input");
             } else if !self.inputs.contains_key(input.as_str())
-                && !foreign::meant(input, ["constant"]).is_empty()
+                && !foreign::equivalents(input, ["constant"]).is_empty()
             {
                 let message =
                     format!("{what} has a coefficient for `{input}`, which is not an input");

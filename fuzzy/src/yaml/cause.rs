@@ -107,13 +107,13 @@ pub(super) fn line(text: &str, finding: &Diagnostic) -> Option<Diagnostic> {
     if let Some(finding) = bare.filter_map(|at| key_without_colon(text, at)).next() {
         return Some(finding);
     }
-    if let Some(finding) = indented_more(text, start) {
+    if let Some(finding) = inconsistent_indent(text, start) {
         return Some(finding);
     }
     // For example `unit:°C` in the line above, or `name:fan` in this line.
     if let Some(finding) = [above, start]
         .into_iter()
-        .find_map(|at| no_space_behind_colon(text, at))
+        .find_map(|at| missing_space_after_colon(text, at))
     {
         return Some(finding);
     }
@@ -139,7 +139,7 @@ fn content_at(text: &str, start: usize) -> Option<(usize, &str)> {
 
 /// Returns a finding for a line such as `unit:°C`. The message does not quote the text, because it may come from any
 /// file, for example one with secrets.
-fn no_space_behind_colon(text: &str, start: usize) -> Option<Diagnostic> {
+fn missing_space_after_colon(text: &str, start: usize) -> Option<Diagnostic> {
     let (at, content) = content_at(text, start)?;
     let (key, value) = content.split_once(':')?;
     if !is_key(key) || value.is_empty() || value.starts_with([' ', '/']) || value.contains(": ") {
@@ -211,7 +211,7 @@ fn open_quote(text: &str, start: usize) -> Option<Diagnostic> {
 }
 
 /// Returns a finding if the line that starts at `start` is indented less than the first line of its mapping.
-fn indented_more(text: &str, start: usize) -> Option<Diagnostic> {
+fn inconsistent_indent(text: &str, start: usize) -> Option<Diagnostic> {
     let indent = |line: &str| line.len() - line.trim_start().len();
     let line = text.get(start..)?.lines().next()?;
     let here = indent(line);

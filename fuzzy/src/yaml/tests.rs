@@ -136,7 +136,7 @@ fn meaning(node: &Node) -> serde_json::Value {
 }
 
 #[test]
-fn a_foreign_line_begins_behind_blanks_of_any_kind() {
+fn a_finding_about_other_syntax_starts_after_unicode_blanks() {
     let text = "\u{2000}<a>";
     let found = parse(text).unwrap_err();
     assert_eq!(text.get(found.0[0].span.clone()), Some("<a>"));

@@ -37,7 +37,7 @@ pub fn other_programs(bytes: &[u8]) {
 }
 
 /// The separator between a profile and its rule set.
-pub(super) const PARTED: &str = "\n---\n";
+pub(super) const SEPARATOR: &str = "\n---\n";
 
 /// Any text gives a rule that prints and reads back as itself, or an error located inside the text.
 pub fn rule(bytes: &[u8]) {
@@ -93,7 +93,7 @@ pub fn profile(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else {
         return;
     };
-    let (profile, rules) = text.split_once(PARTED).unwrap_or((text, ""));
+    let (profile, rules) = text.split_once(SEPARATOR).unwrap_or((text, ""));
     if let Err(findings) = profile.parse::<flagred::profile::Profile>() {
         assert!(findings.has_errors());
         for finding in findings.0 {

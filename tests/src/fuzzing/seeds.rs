@@ -4,7 +4,7 @@ use std::io::Write;
 
 use flate2::{Compression, write::GzEncoder};
 
-use super::{rule_sets::PARTED, session::encode};
+use super::{rule_sets::SEPARATOR, session::encode};
 use crate::log_writer::{
     ATTITUDE, DataFlash, HEARTBEAT, PARAM_VALUE, SERVO_OUTPUT_RAW, Tlog, ULog, Value,
 };
@@ -108,7 +108,7 @@ pub fn profiles() -> Vec<Vec<u8>> {
         spread: {range: [0, 0.5], partition: {low: 0, high: 0.2}}\n  battery: {range: [0, 100], terms: {low: {triangle: [0, 0, 60]}}}\n\
         outputs: {risk: {range: [0, 100], partition: [low, high]}}\nrules:\n  - IF margin IS low AND spread IS NOT low THEN risk IS high\n  \
         - IF margin IS high OR battery IS very low THEN risk IS low WITH 0.5\n";
-    let pair = |profile: &str, rules: &str| format!("{profile}{PARTED}{rules}").into_bytes();
+    let pair = |profile: &str, rules: &str| format!("{profile}{SEPARATOR}{rules}").into_bytes();
     vec![
         pair(small, small_rules),
         pair(

@@ -131,13 +131,13 @@ impl Link {
         link
     }
 
-    fn say(&mut self, message: &MavMessage) -> usize {
+    fn send(&mut self, message: &MavMessage) -> usize {
         let bytes = self.vehicle.packet(Version::V2, 1, message);
         self.watch.receive(self.now_s, address(0), &bytes)
     }
 
     fn beat(&mut self) {
-        self.say(&MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+        self.send(&MavMessage::HEARTBEAT(HEARTBEAT_DATA {
             custom_mode: 0,
             mavtype: MavType::MAV_TYPE_QUADROTOR,
             autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
@@ -148,7 +148,7 @@ impl Link {
     }
 
     fn parameter(&mut self, name: &str, param_value: f32) {
-        self.say(&MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
+        self.send(&MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
             param_value,
             param_count: 900,
             param_index: u16::MAX,
@@ -167,7 +167,7 @@ impl Link {
                 self.beat();
             }
             let wiggle = (self.now_s * 25.0).round() as u16 % 5;
-            self.say(&MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {
+            self.send(&MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {
                 time_usec: (self.now_s * 1e6).round() as u32,
                 servo1_raw: 1500 + wiggle,
                 servo2_raw: 1500,

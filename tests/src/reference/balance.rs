@@ -46,7 +46,7 @@ pub struct Balance {
     /// Whether all motors slow down together.
     pub sinks: bool,
     /// Whether the motors work as before an alarm.
-    pub is_back: bool,
+    pub has_recovered: bool,
     passed_s: [Option<f64>; 2],
     found: [Option<BalanceFinding>; 2],
 }
@@ -96,7 +96,7 @@ impl Balance {
         }
         let shift = self.shift();
         let alike = self.lately.values.iter().all(|x| x.abs() < limit);
-        self.is_back = settled && if learned { near(&shift) } else { alike };
+        self.has_recovered = settled && if learned { near(&shift) } else { alike };
         let compares = self.trims.0.known_s >= 10.0 && settled && learned;
         let weak = weak(&shift, limit / 2.0).filter(|_| compares);
         let plain = less_yaw(&shift, factors);
@@ -105,7 +105,7 @@ impl Balance {
             None
         } else if compares && farthest > limit {
             Some((Measure::Imbalance, self.culprit(&shift)))
-        } else if settled && self.at_odds(factors) > 2.0 * limit {
+        } else if settled && self.largest_pair_difference(factors) > 2.0 * limit {
             Some((Measure::PairImbalance, self.culprit(&self.lately.values)))
         } else {
             None
@@ -157,7 +157,7 @@ impl Balance {
     }
 
     /// The largest amount by which a motor exceeds the opposite one.
-    fn at_odds(&self, factors: &[[f64; 3]]) -> f64 {
+    fn largest_pair_difference(&self, factors: &[[f64; 3]]) -> f64 {
         let x = less_yaw(&self.lately.values, factors);
         let above =
             (0..factors.len()).filter_map(|motor| Some(x[motor] - x[opposite(factors, motor)?]));

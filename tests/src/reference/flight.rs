@@ -78,7 +78,8 @@ pub struct ReferenceResults {
 /// yet work as before the alarm.
 type AcrossGap = (Trims, Option<f64>);
 
-/// Follows flights with a profile and a rule set; `factors` are those of the motors, empty if they are unknown.
+/// Follows flights with a profile and a rule set; `factors` contains the motors' factors, and is empty if they are
+/// unknown.
 pub fn follow(
     samples: &[Sample],
     factors: &[[f64; 3]],
@@ -214,7 +215,7 @@ struct AirborneState {
     episodes: Vec<RaisedEpisode>,
     balance: Balance,
     /// During and after an alarm: the last time, in seconds, at which the motors did not yet work as before the alarm.
-    in_doubt_s: Option<f64>,
+    unrecovered_s: Option<f64>,
     /// Whether the motors began to idle after a high risk; `None` while they do not idle.
     fell: Option<bool>,
     /// Whether the motors idle in the air.
@@ -233,11 +234,11 @@ struct AirborneResults {
 
 impl AirborneState {
     fn new(take_off_s: f64, profile: &Profile, kept: Option<AcrossGap>) -> AirborneState {
-        let (trims, in_doubt_s) = kept.unwrap_or_default();
+        let (trims, unrecovered_s) = kept.unwrap_or_default();
         AirborneState {
             levels: Levels::new(),
             balance: Balance::new(trims),
-            in_doubt_s,
+            unrecovered_s,
             take_off_s,
             since_s: f64::NEG_INFINITY,
             observed: vec![Vec::new(); profile.inputs.len()],
@@ -265,7 +266,7 @@ impl AirborneState {
     /// Whether an alarm is active: the level is above GOOD, a finding of the balance is open, or the motors do not yet
     /// work as before an alarm.
     fn is_alarm(&self) -> bool {
-        self.levels.level > Level::Good || self.balance.is_open() || self.in_doubt_s.is_some()
+        self.levels.level > Level::Good || self.balance.is_open() || self.unrecovered_s.is_some()
     }
 
     /// Ends the findings and resets the elevated risk.
@@ -301,13 +302,13 @@ impl AirborneState {
         for (input, observed) in profile.inputs.iter().zip(&mut self.observed) {
             observed.push(Observation::new(profile, &input.source, span, &now));
         }
-        self.settle(t_s, profile);
+        self.discard_take_off(t_s, profile);
         let settled_s = profile.sampling.take_off_s + profile.sampling.warm_up_s;
         if let Some(limit) = profile.verdict.notices.imbalance
             && t_s - self.take_off_s >= settled_s
             && !sample.lacks_a_motor()
         {
-            let is_calm = self.levels.level == Level::Good && self.in_doubt_s.is_none();
+            let is_calm = self.levels.level == Level::Good && self.unrecovered_s.is_none();
             let limit = (limit.value, limit.after_s);
             let time = (t_s, held_s);
             self.balance.push(time, commands, factors, limit, is_calm);
@@ -319,7 +320,7 @@ impl AirborneState {
         let elevated = risk.map(|risk| self.add(risk, span, profile));
         let known_s = self.moments.last().map_or(t_s, |moment| moment.t_s);
         if t_s - known_s > profile.sampling.longest_gap_s {
-            self.in_doubt_s = self.is_alarm().then_some(known_s);
+            self.unrecovered_s = self.is_alarm().then_some(known_s);
             self.stop(profile, None);
         }
         Row {
@@ -331,7 +332,7 @@ impl AirborneState {
     }
 
     /// Drops the take-off from the long windows and the elevated risk.
-    fn settle(&mut self, t_s: f64, profile: &Profile) {
+    fn discard_take_off(&mut self, t_s: f64, profile: &Profile) {
         let sampling = &profile.sampling;
         let flown_s = t_s - self.take_off_s;
         let is_due = flown_s >= sampling.take_off_s + sampling.warm_up_s;
@@ -367,19 +368,19 @@ impl AirborneState {
             sinks: !self.falls && self.balance.sinks,
         });
         self.levels.push(verdict, &self.moments);
-        self.doubt(t_s, verdict);
+        self.update_recovery(t_s, verdict);
         elevated
     }
 
-    /// Updates `in_doubt_s`. An alarm lasts until the motors have worked as before the alarm for `clear_after_s`.
-    fn doubt(&mut self, t_s: f64, verdict: &VerdictSettings) {
+    /// Updates `unrecovered_s`. An alarm lasts until the motors have worked as before the alarm for `clear_after_s`.
+    fn update_recovery(&mut self, t_s: f64, verdict: &VerdictSettings) {
         let is_alarm = self.levels.level > Level::Good;
-        let is_back = verdict.notices.imbalance.is_none() || self.balance.is_back;
-        if (is_alarm || self.in_doubt_s.is_some()) && !is_back {
-            self.in_doubt_s = Some(t_s);
+        let has_recovered = verdict.notices.imbalance.is_none() || self.balance.has_recovered;
+        if (is_alarm || self.unrecovered_s.is_some()) && !has_recovered {
+            self.unrecovered_s = Some(t_s);
         } else if !is_alarm {
             let lasts = |s: &f64| t_s - s < verdict.clear_after_s - 1e-6;
-            self.in_doubt_s = self.in_doubt_s.filter(lasts);
+            self.unrecovered_s = self.unrecovered_s.filter(lasts);
         }
     }
 }

@@ -286,7 +286,7 @@ fn number(
         let total: f64 = fired.iter().map(|(weight, _)| weight).sum();
         let sums = fired
             .iter()
-            .map(|(weight, term)| weight * place(term, *weight, &output.variable));
+            .map(|(weight, term)| weight * inverse(term, *weight, &output.variable));
         return Some(sums.sum::<f64>() / total);
     }
     let is_singleton = |term: &Term| {
@@ -381,7 +381,7 @@ fn sampled(set: &Set<'_>, samples: usize) -> f64 {
 
 /// The position at which a monotone term has the given degree, by bisection; the end of the range
 /// if the position is farther away than 1e6 ranges.
-fn place(term: &Term, degree: f64, variable: &Variable) -> f64 {
+fn inverse(term: &Term, degree: f64, variable: &Variable) -> f64 {
     let of = |x: f64| term.height * membership(&term.membership_function, x);
     let far = 1e6 * (variable.high - variable.low);
     let (mut left, mut right) = (variable.low - far, variable.high + far);

@@ -44,7 +44,7 @@ pub fn judge(area: &Area, rows: &[Row], risks_pct: &[f64]) -> Ranking {
     let rows = rows
         .iter()
         .zip(risks_pct)
-        .filter(|(row, _)| (area.holds)(row));
+        .filter(|(row, _)| (area.contains)(row));
     Ranking::new(rows.map(|(row, risk_pct)| Prediction {
         score: *risk_pct,
         critical: row.is_critical,

@@ -13,7 +13,7 @@ pub struct Area {
     /// The name of this set of rows.
     pub name: &'static str,
     /// Whether a row belongs to the set.
-    pub holds: fn(&Row) -> bool,
+    pub contains: fn(&Row) -> bool,
     /// The weight of the area.
     weight: f64,
 }
@@ -23,42 +23,42 @@ pub struct Area {
 pub const AREAS: [Area; 8] = [
     Area {
         name: "real",
-        holds: |row| row.set.is_real(),
+        contains: |row| row.set.is_real(),
         weight: 2.0,
     },
     Area {
         name: "real, quiet for 5 s",
-        holds: |row| row.set.is_real() && row.is_quiet_5_s,
+        contains: |row| row.set.is_real() && row.is_quiet_5_s,
         weight: 2.0,
     },
     Area {
         name: "sitl2 without manoeuvres",
-        holds: |row| row.set == Set::Sitl2 && row.kind != "manoeuvre",
+        contains: |row| row.set == Set::Sitl2 && row.kind != "manoeuvre",
         weight: 1.0,
     },
     Area {
         name: "sitl2 without manoeuvres, quiet for 10 s",
-        holds: |row| row.set == Set::Sitl2 && row.kind != "manoeuvre" && row.is_quiet_10_s,
+        contains: |row| row.set == Set::Sitl2 && row.kind != "manoeuvre" && row.is_quiet_10_s,
         weight: 1.0,
     },
     Area {
         name: "sitl3",
-        holds: |row| row.set == Set::Sitl3,
+        contains: |row| row.set == Set::Sitl3,
         weight: 1.0,
     },
     Area {
         name: "sitl3, quiet for 5 s",
-        holds: |row| row.set == Set::Sitl3 && row.is_quiet_5_s,
+        contains: |row| row.set == Set::Sitl3 && row.is_quiet_5_s,
         weight: 1.0,
     },
     Area {
         name: "sitl3, gusts and rising wind",
-        holds: |row| row.set == Set::Sitl3 && matches!(row.kind.as_str(), "gusts" | "rising"),
+        contains: |row| row.set == Set::Sitl3 && matches!(row.kind.as_str(), "gusts" | "rising"),
         weight: 1.0,
     },
     Area {
         name: "sitl2 and sitl3",
-        holds: |row| !row.set.is_real(),
+        contains: |row| !row.set.is_real(),
         weight: 1.0,
     },
 ];
@@ -69,7 +69,7 @@ pub struct FalseAlarmSet {
     /// The name of this set of rows.
     pub name: &'static str,
     /// Whether a row belongs to the set.
-    pub holds: fn(&Row) -> bool,
+    pub contains: fn(&Row) -> bool,
     /// The highest risk without a penalty, in %.
     pub above_pct: f64,
     /// The penalty if the risks exceed `above_pct` by 1 percentage point on average.
@@ -80,13 +80,13 @@ pub struct FalseAlarmSet {
 pub const FALSE_ALARM_SETS: [FalseAlarmSet; 3] = [
     FalseAlarmSet {
         name: "ordinary real flights",
-        holds: |row| row.set.is_real() && row.kind == "ordinary",
+        contains: |row| row.set.is_real() && row.kind == "ordinary",
         above_pct: 50.0,
         cost: 0.015,
     },
     FalseAlarmSet {
         name: "sitl3 hover, yaw, mission and pilot, not critical",
-        holds: |row| {
+        contains: |row| {
             let kinds = ["hover_noise", "yaw", "mission", "pilot"];
             row.set == Set::Sitl3 && kinds.contains(&row.kind.as_str()) && !row.is_critical
         },
@@ -95,7 +95,7 @@ pub const FALSE_ALARM_SETS: [FalseAlarmSet; 3] = [
     },
     FalseAlarmSet {
         name: "sitl2 calm",
-        holds: |row| row.set == Set::Sitl2 && row.kind == "calm",
+        contains: |row| row.set == Set::Sitl2 && row.kind == "calm",
         above_pct: 30.0,
         cost: 0.01,
     },
@@ -118,13 +118,13 @@ pub(super) struct Problem {
 impl Problem {
     pub(super) fn new(rows: &[&Row], votes: &Votes) -> Problem {
         let column = |input: &Input| rows.iter().map(|row| row.inputs[input.place]).collect();
-        let which = |holds: &dyn Fn(&Row) -> bool| {
-            let all = rows.iter().enumerate().filter(|(_, row)| holds(row));
+        let which = |contains: &dyn Fn(&Row) -> bool| {
+            let all = rows.iter().enumerate().filter(|(_, row)| contains(row));
             all.map(|(i, _)| i as u32).collect::<Vec<u32>>()
         };
         let area = |area: &Area| {
             [true, false]
-                .map(|critical| which(&|row| (area.holds)(row) && row.is_critical == critical))
+                .map(|critical| which(&|row| (area.contains)(row) && row.is_critical == critical))
         };
         let mut of_vehicle: HashMap<(Set, &str), f64> = HashMap::new();
         for row in rows {
@@ -138,7 +138,7 @@ impl Problem {
             areas: AREAS.iter().map(area).collect(),
             excesses: FALSE_ALARM_SETS
                 .iter()
-                .map(|excess| which(&excess.holds))
+                .map(|excess| which(&excess.contains))
                 .collect(),
         }
     }

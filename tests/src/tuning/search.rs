@@ -16,7 +16,7 @@ const DIGITS: [&str; 12] = [
     "1", "1.2", "1.6", "2", "2.5", "3", "4", "5", "6", "7", "8", "9",
 ];
 
-/// The number of round numbers on either side of a peak to try.
+/// The number of round numbers to try on either side of a peak.
 const REACH: usize = 2;
 
 /// The minimum gain of a change.

@@ -25,14 +25,14 @@ impl StandIn {
                 let known = self.parameters.iter().find(|(known, _)| known == name);
                 if let Some((name, value)) = known {
                     let reply = parameter(name, *value);
-                    self.say(&reply);
+                    self.send_outside_flight(&reply);
                 }
             }
             MavMessage::COMMAND_LONG(command) => {
                 if command.param1 == SERVO_OUTPUT_RAW && self.obeys {
                     self.every = Duration::from_secs_f64(f64::from(command.param2) * 1e-6);
                 }
-                self.say(&MavMessage::COMMAND_ACK(COMMAND_ACK_DATA {
+                self.send_outside_flight(&MavMessage::COMMAND_ACK(COMMAND_ACK_DATA {
                     command: MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,
                     result: MavResult::MAV_RESULT_ACCEPTED,
                     ..COMMAND_ACK_DATA::default()

@@ -7,7 +7,7 @@ use flagred_flightlog::mavlink::dialect::{
 };
 
 /// The number of outputs in one SERVO_OUTPUT_RAW.
-pub const OUTPUTS_A_PORT: usize = 16;
+pub const OUTPUTS_PER_PORT: usize = 16;
 
 /// The heartbeat of an ArduPilot vehicle.
 pub fn heartbeat(mavtype: MavType, armed: bool, in_air: bool) -> MavMessage {
@@ -69,7 +69,7 @@ pub(super) fn parameter(name: &str, value: f64) -> MavMessage {
 }
 
 /// SERVO_OUTPUT_RAW of the first 16 outputs.
-pub fn servo(time_usec: u32, pulses: &[u16; OUTPUTS_A_PORT]) -> MavMessage {
+pub fn servo(time_usec: u32, pulses: &[u16; OUTPUTS_PER_PORT]) -> MavMessage {
     servo_of_port(time_usec, 0, pulses)
 }
 
@@ -77,7 +77,7 @@ pub fn servo(time_usec: u32, pulses: &[u16; OUTPUTS_A_PORT]) -> MavMessage {
 pub(super) fn servo_of_port(
     time_usec: u32,
     port: u8,
-    pulses: &[u16; OUTPUTS_A_PORT],
+    pulses: &[u16; OUTPUTS_PER_PORT],
 ) -> MavMessage {
     let p = pulses;
     MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {

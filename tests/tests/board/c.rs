@@ -15,7 +15,7 @@ use flagred_tests::{
     flagred,
 };
 
-use super::{along, assert_same, by_the_monitor, exported, profiles_of_every_kind};
+use super::{along, assert_same, exported, monitor_results, profiles_of_every_kind};
 
 /// The shipped profile, and its name in C.
 const FLAGRED: (&str, &str) = ("flagred", "flagred");
@@ -173,7 +173,7 @@ fn exported_c_agrees_with_the_monitor_on_flights_and_with_the_estimator_on_a_gri
             for geometry in [&[][..], &geometry(&log)] {
                 let mut command = Command::new(folder.at(name));
                 command.arg(flight[0].motors.len().to_string());
-                let expected = by_the_monitor(&estimator, geometry, &flight);
+                let expected = monitor_results(&estimator, geometry, &flight);
                 let what = format!("{name} in C, {} factors, {}", geometry.len(), log.display());
                 assert_same(
                     &expected,
@@ -265,7 +265,7 @@ fn a_damaged_table_is_refused_or_evaluates_in_c() {
 
 /// The programs of examples/09-on-board.md and docs/firmware.md.
 #[test]
-fn the_pages_in_c_run() {
+fn the_programs_in_c_of_the_documents_run() {
     let tipper = concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/tipper.yaml");
     for (page, header, exported, prints) in [
         (

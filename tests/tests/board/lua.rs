@@ -19,7 +19,7 @@ use crate::autopilot::{Record, RecordOutput, Run, Vehicle, records, run};
 const TOLERANCE_PCT: f64 = 0.1;
 
 /// The monitor's result for the first sample with a known risk in each tenth of a second, which is what the script logs.
-fn by_the_monitor(
+fn monitor_results(
     estimator: &Estimator,
     vehicle: &Vehicle,
     records: &[Record],
@@ -110,7 +110,7 @@ fn the_script_agrees_with_the_monitor_on_every_flight() {
             let flight = flagred_flightlog::open(&log, &Options::default()).unwrap();
             let (vehicle, records) = (Vehicle::of(&flight), records(&flight));
             let what = format!("{profile}, {}", log.display());
-            let expected = by_the_monitor(&estimator, &vehicle, &records);
+            let expected = monitor_results(&estimator, &vehicle, &records);
             assert!(expected.len() > 500, "{what}: {}", expected.len());
             let run = run(&script, &vehicle, &records, &[]);
             let (risk, elevated) = differ(&expected, &run.logged, &what);
@@ -178,11 +178,7 @@ fn eventful(vehicle: &Vehicle) -> Vec<Record> {
 }
 
 /// The messages of a flight according to the assessor's findings: time, level and cause.
-fn told_by_the_assessor(
-    estimator: &Estimator,
-    vehicle: &Vehicle,
-    records: &[Record],
-) -> Vec<String> {
+fn assessor_messages(estimator: &Estimator, vehicle: &Vehicle, records: &[Record]) -> Vec<String> {
     let craft = Craft::new(vehicle.factors.len()).with_geometry(&vehicle.factors);
     let mut assessor = Assessor::new(estimator, craft, None).unwrap();
     let mut reported = Vec::new();
@@ -247,7 +243,7 @@ fn the_script_reports_levels_and_causes_of_any_frame() {
     for name in ["QUAD/X", "OCTAQUAD/X", "DODECAHEXA/X"] {
         let vehicle = Vehicle::named(name);
         let records = eventful(&vehicle);
-        let expected = by_the_monitor(&estimator, &vehicle, &records);
+        let expected = monitor_results(&estimator, &vehicle, &records);
         let run = run(&script, &vehicle, &records, &[]);
         eprintln!(
             "{name}: instructions {:?}, heap {:?}\n{}",
@@ -272,7 +268,7 @@ fn the_script_reports_levels_and_causes_of_any_frame() {
         };
         let found = run.texts.lines().skip(1).map(in_short).map(either);
         let found: Vec<String> = found.collect();
-        let reported = told_by_the_assessor(&estimator, &vehicle, &records);
+        let reported = assessor_messages(&estimator, &vehicle, &records);
         let reported: Vec<String> = reported.into_iter().map(either).collect();
         assert_eq!(reported, found, "{name}");
         assert!(found.len() > 5, "{found:?}");
@@ -440,7 +436,7 @@ fn every_signal_and_statistic_is_the_same_in_the_script() {
     let script = script(&file, &folder);
     let vehicle = Vehicle::named("HEXA/X");
     let records = &eventful(&vehicle)[..4000];
-    let expected = by_the_monitor(&estimator, &vehicle, records);
+    let expected = monitor_results(&estimator, &vehicle, records);
     assert!(expected.len() > 1000, "{}", expected.len());
     let run = run(&script, &vehicle, records, &[]);
     eprintln!("every signal: instructions {:?}", run.instructions);
@@ -470,7 +466,7 @@ fn signals_of_two_and_missing_ones_are_the_same_in_the_script() {
     for record in &mut records[..1500] {
         record.battery_pct = f64::NAN;
     }
-    let expected = by_the_monitor(&estimator, &vehicle, &records);
+    let expected = monitor_results(&estimator, &vehicle, &records);
     let [first, .., last] = expected.as_slice() else {
         panic!("{expected:?}")
     };
@@ -535,7 +531,7 @@ fn the_script_evaluates_outputs_that_read_other_outputs() {
         let script = script(&file, &folder);
         let written = std::fs::read_to_string(&script).unwrap();
         assert!(!written.contains("comfort IS good THEN") && written.contains("LEADS"));
-        let expected = by_the_monitor(&estimator, &vehicle, &records);
+        let expected = monitor_results(&estimator, &vehicle, &records);
         let run = run(&script, &vehicle, &records, &[]);
         let (risk, elevated) = differ(&expected, &run.logged, operators);
         eprintln!(
@@ -549,7 +545,7 @@ fn the_script_evaluates_outputs_that_read_other_outputs() {
         );
         run.assert_within_budget(operators);
         let found: Vec<String> = run.texts.lines().skip(1).map(in_short).collect();
-        let reported = told_by_the_assessor(&estimator, &vehicle, &records);
+        let reported = assessor_messages(&estimator, &vehicle, &records);
         assert_eq!(reported, found, "{operators}");
         // The cause of the risk is the cause of the strain that it reads.
         assert!(
@@ -582,7 +578,7 @@ fn the_script_does_not_drift_in_a_long_flight() {
         t_us: record.t_us + last_us,
         ..record
     }));
-    let expected = by_the_monitor(&estimator, &vehicle, &records);
+    let expected = monitor_results(&estimator, &vehicle, &records);
     let run = run(&script("flagred", &folder), &vehicle, &records, &[]);
     let (risk, elevated) = differ(&expected, &run.logged, "78 minutes");
     eprintln!("78 minutes: risk {risk:.4} %, elevated {elevated:.4} %");

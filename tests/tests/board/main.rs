@@ -55,7 +55,7 @@ fn with_monitor<R>(
 }
 
 /// The updates of the monitor for each sample of a flight, and the findings at its end.
-fn by_the_monitor(estimator: &Estimator, geometry: &[Factors], flight: &[Moment]) -> Vec<String> {
+fn monitor_results(estimator: &Estimator, geometry: &[Factors], flight: &[Moment]) -> Vec<String> {
     let signals = estimator.profile().signals();
     let mut monitor = Monitor::new(
         estimator,
@@ -176,7 +176,7 @@ fn plans_agree_with_the_monitor_on_every_flight() {
             let flight = moments(&log, &estimator.profile().signals());
             for geometry in [&[][..], &geometry(&log)] {
                 let what = format!("{name}, {} factors, {}", geometry.len(), log.display());
-                let expected = by_the_monitor(&estimator, geometry, &flight);
+                let expected = monitor_results(&estimator, geometry, &flight);
                 assert_same(&expected, &on_board(&lent, geometry, &flight), &what);
                 assert_same(&expected, &on_board(plan, geometry, &flight), &what);
             }
@@ -186,7 +186,7 @@ fn plans_agree_with_the_monitor_on_every_flight() {
 
 /// A rule whose strength has a lower index than the strengths of its output raises nothing, and does not cause a panic.
 #[test]
-fn an_action_without_an_output_raises_nothing() {
+fn an_action_without_an_output_is_not_a_cause() {
     let estimator = estimator("flagred-paper");
     let plan = estimator.plan().unwrap();
     let mut outputs = plan.rules.table.outputs.to_vec();
@@ -323,7 +323,7 @@ fn a_profile_without_motors_is_the_same_in_borrowed_memory_and_in_c() {
         signals: vec![f64::from(i) / 300.0],
     };
     let flight: Vec<Moment> = (0..600).map(moment).collect();
-    let expected = by_the_monitor(&estimator, &[], &flight);
+    let expected = monitor_results(&estimator, &[], &flight);
     let plan = estimator.plan().unwrap();
     assert_same(&expected, &on_board(&plan, &[], &flight), "no motors");
     let (_, built) = c::program("tests/c/follow.c", "no-motors", (&file, "no_motors"));
@@ -348,7 +348,7 @@ fn same_lent_and_in_c((estimator, file): (Estimator, String)) -> BTreeSet<String
     for log in logs() {
         let flight = moments(&log, &signals);
         let geometry = geometry(&log);
-        let expected = by_the_monitor(&estimator, &geometry, &flight);
+        let expected = monitor_results(&estimator, &geometry, &flight);
         let what = format!("every signal, {}", log.display());
         assert_same(&expected, &on_board(&plan, &geometry, &flight), &what);
         with_monitor(&plan, geometry.len(), |monitor| {
@@ -405,17 +405,17 @@ fn an_ambiguous_geometry_is_refused_and_changes_nothing() {
         let mut output: Vec<String> = output.collect();
         output.push(findings(&monitor.finish()));
         assert_same(
-            &by_the_monitor(&estimator, &[], &flight),
+            &monitor_results(&estimator, &[], &flight),
             &output,
             "refused",
         );
     });
-    let with_it = by_the_monitor(&estimator, &known, &flight);
-    assert!(with_it != by_the_monitor(&estimator, &[], &flight));
+    let with_it = monitor_results(&estimator, &known, &flight);
+    assert!(with_it != monitor_results(&estimator, &[], &flight));
 }
 
 #[test]
-fn a_storage_refuses_plans_of_other_sizes() {
+fn a_storage_rejects_plans_of_other_sizes() {
     let mut storage = exported::flagred::Storage::<8>::new();
     assert!(storage.monitor(&exported::flagred::PLAN).is_ok());
     let other = storage.monitor(&exported::flagred_battery::PLAN);

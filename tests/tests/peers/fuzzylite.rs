@@ -7,7 +7,7 @@ use flagred_interchange::Format;
 use flagred_tests::Folder;
 use fuzzy::Model;
 
-use super::{SHIPPED, ask, model, python, write};
+use super::{SHIPPED, model, python, run_peer, write};
 
 /// A shape over [0, 10], of the variable `own`.
 fn shape(rng: &mut Rng, own: &str) -> String {
@@ -133,7 +133,7 @@ fn pyfuzzylite_computes_the_same_values_from_exported_files() {
             50,
         );
     }
-    ask(
+    run_peer(
         python(),
         "fuzzylite_peer.py",
         &folder,

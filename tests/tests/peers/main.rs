@@ -63,7 +63,7 @@ fn write(folder: &Folder, name: &str, model: &Model, format: Format, points: usi
 }
 
 /// Runs a script of `tests/peer` on a folder, and compares its output.
-fn ask(mut program: Command, script: &str, folder: &Folder, expected: &str) {
+fn run_peer(mut program: Command, script: &str, folder: &Folder, expected: &str) {
     let script = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("peer")
         .join(script);

@@ -7,7 +7,7 @@ use flagred_interchange::Format;
 use flagred_tests::Folder;
 use fuzzy::Model;
 
-use super::{SHIPPED, ask, model, write};
+use super::{SHIPPED, model, run_peer, write};
 
 /// A term in [0, 10]. Octave does not accept vertical flanks, and requires integer slopes of bells.
 fn shape(rng: &mut Rng) -> String {
@@ -85,7 +85,7 @@ fn octave_computes_the_same_values_from_exported_files() {
     }
     let mut octave = Command::new("octave-cli");
     octave.arg("--quiet");
-    ask(
+    run_peer(
         octave,
         "octave_peer.m",
         &folder,

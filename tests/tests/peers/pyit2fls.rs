@@ -7,7 +7,7 @@ use flagred_interchange::Format;
 use flagred_tests::Folder;
 use fuzzy::{Engine, Model};
 
-use super::{SHIPPED, ask, model, python, write};
+use super::{SHIPPED, model, python, run_peer, write};
 
 fn random(seed: u64) -> Model {
     let rng = &mut Rng::with_seed(seed);
@@ -54,7 +54,7 @@ fn pyit2fls_computes_the_same_values_from_exported_files() {
             50,
         );
     }
-    ask(
+    run_peer(
         python(),
         "pyit2fls_peer.py",
         &folder,
@@ -148,12 +148,12 @@ fn interval_rule_sets() -> Folder {
 fn the_samples_of_pyit2fls_approach_our_intervals() {
     let expected = "10 rule sets, 0 numbers of samples with other intervals";
     let folder = interval_rule_sets();
-    ask(python(), "pyit2fls_type2_peer.py", &folder, expected);
+    run_peer(python(), "pyit2fls_type2_peer.py", &folder, expected);
 }
 
 #[test]
 #[ignore = "needs Python, and takes a minute: tests/peer/pyit2fls.sh"]
 fn intervals_computed_with_fractions_equal_ours() {
     let expected = "100 ends of intervals";
-    ask(python(), "type2_peer.py", &interval_rule_sets(), expected);
+    run_peer(python(), "type2_peer.py", &interval_rule_sets(), expected);
 }

@@ -30,7 +30,7 @@ struct Variable {
 }
 
 /// A rule: the term of each input, the term of the output, and the weight.
-struct Sentence {
+struct ParsedRule {
     inputs: Vec<usize>,
     output: usize,
     weight: f64,
@@ -41,14 +41,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let [system, folder] = &arguments[..] else {
         return Err("use NAME FOLDER".into());
     };
-    let (variables, sentences) = read(&std::fs::read_to_string(format!("{folder}/{system}.fll"))?)?;
+    let (variables, rules) = read(&std::fs::read_to_string(format!("{folder}/{system}.fll"))?)?;
     let points = std::fs::read_to_string(format!("{folder}/{system}.points"))?;
     let mut rows = Vec::new();
     // Rule sets with many rules are evaluated at fewer points, because these programs would need minutes for all
     // points.
     for line in points
         .lines()
-        .take(if sentences.len() > 100 { 64 } else { 1024 })
+        .take(if rules.len() > 100 { 64 } else { 1024 })
     {
         let row: Result<Vec<f64>, _> = line.split(' ').map(str::parse).collect();
         rows.push(row?);
@@ -56,17 +56,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (output, inputs) = variables.split_last().ok_or("no variables")?;
     for samples in [100, 1000] {
         let program = format!("fuzzy-logic_rs 0.5 (Rust) {samples} samples");
-        let engine = fuzzy_logic_rs(inputs, output, &sentences, samples)?;
+        let engine = fuzzy_logic_rs(inputs, output, &rules, samples)?;
         report(system, &program, output, &rows, |row| {
             engine.compute_outputs(row.to_vec())[0]
         });
     }
-    oxictl(system, inputs, output, &sentences, &rows)
+    oxictl(system, inputs, output, &rules, &rows)
 }
 
 /// The variables and rules in the subset of fuzzylite's language that the example writes.
-fn read(text: &str) -> Result<(Vec<Variable>, Vec<Sentence>), Box<dyn std::error::Error>> {
-    let (mut variables, mut sentences) = (Vec::<Variable>::new(), Vec::new());
+fn read(text: &str) -> Result<(Vec<Variable>, Vec<ParsedRule>), Box<dyn std::error::Error>> {
+    let (mut variables, mut rules) = (Vec::<Variable>::new(), Vec::new());
     for line in text.lines() {
         let (key, value) = line.trim().split_once(": ").unwrap_or((line, ""));
         let words: Vec<&str> = value.split(' ').collect();
@@ -97,7 +97,7 @@ fn read(text: &str) -> Result<(Vec<Variable>, Vec<Sentence>), Box<dyn std::error
                     .as_deref()
                     .and_then(<[usize]>::split_last)
                     .ok_or_else(|| format!("not a plain AND of all inputs: {value}"))?;
-                sentences.push(Sentence {
+                rules.push(ParsedRule {
                     inputs: inputs.to_vec(),
                     output: *output,
                     weight: words[words.len() - 1].parse()?,
@@ -106,13 +106,13 @@ fn read(text: &str) -> Result<(Vec<Variable>, Vec<Sentence>), Box<dyn std::error
             _ => {}
         }
     }
-    Ok((variables, sentences))
+    Ok((variables, rules))
 }
 
 fn fuzzy_logic_rs(
     inputs: &[Variable],
     output: &Variable,
-    sentences: &[Sentence],
+    rules: &[ParsedRule],
     samples: i32,
 ) -> Result<MamdaniFIS, Box<dyn std::error::Error>> {
     let mut engine = MamdaniFIS::new(
@@ -144,10 +144,10 @@ fn fuzzy_logic_rs(
         variable.add_membership(range);
     }
     engine.add_output(variable);
-    for sentence in sentences {
-        let places = sentence.inputs.iter().chain([&sentence.output]);
+    for rule in rules {
+        let places = rule.inputs.iter().chain([&rule.output]);
         let places = places.map(|place| *place as i32).collect();
-        engine.add_rule(Rule::new_and(places, sentence.weight));
+        engine.add_rule(Rule::new_and(places, rule.weight));
     }
     Ok(engine)
 }
@@ -156,7 +156,7 @@ fn oxictl(
     system: &str,
     inputs: &[Variable],
     output: &Variable,
-    sentences: &[Sentence],
+    rules: &[ParsedRule],
     rows: &[Vec<f64>],
 ) -> Result<(), Box<dyn std::error::Error>> {
     type MembershipFunction = Box<dyn MembershipFn<f64>>;
@@ -184,12 +184,12 @@ fn oxictl(
     macro_rules! with_room_for {
         ($rules:literal) => {{
             let mut engine = MamdaniEngine::<f64, $rules, 8>::new(TNorm::Min);
-            for sentence in sentences {
+            for rule in rules {
                 let mut antecedent = Antecedent::new();
-                for (input, term) in sentence.inputs.iter().enumerate() {
+                for (input, term) in rule.inputs.iter().enumerate() {
                     antecedent.add(input, *term).map_err(|e| e.to_string())?;
                 }
-                let consequent = Consequent::new(0, sentence.output, sentence.weight);
+                let consequent = Consequent::new(0, rule.output, rule.weight);
                 let rule = FuzzyRule::new(antecedent, consequent);
                 engine.add_rule(rule).map_err(|e| e.to_string())?;
             }
@@ -208,7 +208,7 @@ fn oxictl(
             );
         }};
     }
-    if sentences.len() > 16 {
+    if rules.len() > 16 {
         with_room_for!(625);
     } else {
         with_room_for!(16);

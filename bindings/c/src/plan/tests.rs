@@ -125,7 +125,7 @@ macro_rules! copy {
             let table = plan.rules.table;
             let mut arrays = Arrays::default();
             let filled = plan.filled.unwrap_or(FilledKnots { coordinates: &[], starts: &[], values: &[], distances: &[] });
-            let [conjunctions, actions_a_cell, first_action, sums] = table.conjunctions.code();
+            let [conjunctions, actions_per_cell, first_action, sums] = table.conjunctions.code();
             let channels: Vec<CChannel> = plan.channels.iter().map(channel).collect();
             let sources: Vec<CSource> = plan.inputs.iter().map(source).collect();
             let mut plan = Box::new(Plan {
@@ -134,14 +134,14 @@ macro_rules! copy {
                     and: (0..7).find(|code| conjunction(*code).ok() == Some(table.and)).unwrap(),
                     or: (0..7).find(|code| disjunction(*code).ok() == Some(table.or)).unwrap(),
                     conjunctions,
-                    actions_a_cell,
+                    actions_per_cell,
                     first_action,
                     sums,
                     sizes: table.sizes,
                     least_strength: table.least_strength,
                     $($array: copy!(@keep $item arrays, table.$array),)*
                     stages: arrays.keep(plan.rules.stages),
-                    places: arrays.keep(plan.rules.places),
+                    indices: arrays.keep(plan.rules.indices),
                 },
                 output: plan.output,
                 signals: plan.signals,
@@ -159,7 +159,7 @@ macro_rules! copy {
             let counts = vec![
                 $(&raw mut plan.rules.$array.count,)*
                 &raw mut plan.rules.stages.count,
-                &raw mut plan.rules.places.count,
+                &raw mut plan.rules.indices.count,
                 &raw mut plan.order.count,
                 &raw mut plan.channels.count,
                 &raw mut plan.sources.count,

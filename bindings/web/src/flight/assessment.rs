@@ -75,7 +75,7 @@ impl Assessment {
 
     /// The signals of the log with their units and sources, as JSON.
     pub fn signals(&self) -> Result<String, JsError> {
-        let signals = flagred_report::offered::signals(&self.subject.flight);
+        let signals = flagred_report::available::signals(&self.subject.flight);
         serde_json::to_string(&signals).map_err(|error| failure(error, None))
     }
 

@@ -66,7 +66,8 @@ impl Flight {
     }
 
     /// Whether all signals that a profile needs were read.
-    pub fn serves(&self, profile: &Profile) -> bool {
+    #[wasm_bindgen(js_name = serves)]
+    pub fn has_signals_for(&self, profile: &Profile) -> bool {
         let read = |name: &String| self.signals.as_ref().is_none_or(|read| read.contains(name));
         profile.signals().iter().all(read)
     }

@@ -25,12 +25,12 @@ pub fn check_rules(text: &str, file: &str) -> Result<String, JsError> {
     let document = text::document(text);
     if document.is_profile() {
         let name = document.profile().map(|profile| profile.name.as_str());
-        let alone = document.alone();
+        let input_risks = document.risks_of_single_inputs();
         return json(&CheckDocument::profile(
             file,
             name,
             &document.findings().0,
-            &alone,
+            &input_risks,
         ));
     }
     let examined = flagred_authoring::examine(document.source(), &check::Options::default());

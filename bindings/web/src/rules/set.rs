@@ -42,14 +42,14 @@ pub struct View {
     output: usize,
     axes: Vec<(usize, Scale)>,
     points: usize,
-    held: Vec<f64>,
+    fixed: Vec<f64>,
 }
 
 #[wasm_bindgen(js_class = View)]
 impl View {
     /// Creates a view. `axes` contains for each axis the index of its input and the ends of the part to show.
     #[wasm_bindgen(constructor)]
-    pub fn new(output: usize, axes: &[f64], points: usize, held: Vec<f64>) -> View {
+    pub fn new(output: usize, axes: &[f64], points: usize, fixed: Vec<f64>) -> View {
         let axes = axes.chunks_exact(3).take(2);
         let axes = axes.map(|axis| match axis {
             [input, low, high] => (*input as usize, Scale::new(*low, *high)),
@@ -59,7 +59,7 @@ impl View {
             output,
             axes: axes.collect(),
             points: points.clamp(2, 1001),
-            held,
+            fixed,
         }
     }
 }
@@ -203,10 +203,11 @@ impl RuleSet {
 
     /// Chooses a value for each input that is not an axis: the one in `fixed` if it is finite; otherwise the middle
     /// of the range, or the peak of a term if the output varies more there.
-    pub fn held(&self, output: usize, axes: &[usize], fixed: &[f64]) -> Vec<f64> {
+    #[wasm_bindgen(js_name = held)]
+    pub fn fixed_values(&self, output: usize, axes: &[usize], fixed: &[f64]) -> Vec<f64> {
         let fixed: Vec<Option<f64>> = fixed.iter().map(|x| x.is_finite().then_some(*x)).collect();
         let x = axes.first().copied().unwrap_or(0);
-        slice::held(&self.mapped(output), &fixed, (x, axes.get(1).copied()))
+        slice::fixed_values(&self.mapped(output), &fixed, (x, axes.get(1).copied()))
     }
 
     /// The cells of a map: all values, then all coverages, then the numbers of the dominant rules, then whether the
@@ -317,7 +318,12 @@ impl RuleSet {
         let mut axes = view.axes.iter().filter_map(axis);
         let x = axes.next();
         let x = x.ok_or_else(|| failure("a map needs an input along an axis", None))?;
-        let cut = slice::cut(&self.mapped(view.output), x, axes.next(), view.held.clone());
+        let cut = slice::cut(
+            &self.mapped(view.output),
+            x,
+            axes.next(),
+            view.fixed.clone(),
+        );
         cut.map_err(|error| failure(error, None))
     }
 }

@@ -28,7 +28,7 @@ fn starter() -> String {
 }
 
 #[test]
-fn a_term_goes_where_the_terms_are_farthest_apart() {
+fn a_new_term_is_placed_in_the_widest_gap() {
     let after = text_after(&starter(), |d| add_term(d, 0, "tropical")).unwrap();
     assert_eq!(
         after,

@@ -158,7 +158,7 @@ fn a_term_gets_another_shape_at_the_same_place() {
 }
 
 #[test]
-fn terms_that_only_the_text_changes_are_shown() {
+fn terms_of_type_2_are_listed_but_not_editable() {
     let document = Document::new(TYPE2, |_| None);
     let bad = fields(&document, 0, 0).unwrap();
     assert_eq!(

@@ -22,7 +22,7 @@ const BEFORE_END_S: f64 = 1.0;
 pub(super) fn rows(log: &str, plan: &Plan) -> Result<FileRows, Failure> {
     let names = plan.profile.signals();
     let flight = open_complete(log, &names, "gives no rows")?;
-    let said = |key: &str| header(&flight, key);
+    let header_value = |key: &str| header(&flight, key);
     let carried = log::carried(&flight, &names);
     if let Some(lacking) = names.iter().find(|name| !carried.contains(name)) {
         return Err(Failure::unreadable(format!(
@@ -59,8 +59,11 @@ pub(super) fn rows(log: &str, plan: &Plan) -> Result<FileRows, Failure> {
             };
             let before = |before_s| record.largest_within(t_s - before_s, before_s);
             made.rows.push(Row {
-                vehicle: said("vehicle").unwrap_or("").to_owned(),
-                kind: said("kind").or(said("real_class")).unwrap_or("").to_owned(),
+                vehicle: header_value("vehicle").unwrap_or("").to_owned(),
+                kind: header_value("kind")
+                    .or(header_value("real_class"))
+                    .unwrap_or("")
+                    .to_owned(),
                 from_s: Some(length_s.map_or(air_s.from_s, |length_s| t_s - length_s)),
                 to_s: Some(t_s),
                 inputs,

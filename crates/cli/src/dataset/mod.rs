@@ -135,7 +135,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             match made {
                 Ok(made) => {
                     for note in &made.notes {
-                        output::say(&format!("{log}: {note}"));
+                        output::print_note(&format!("{log}: {note}"));
                     }
                     written += made.rows.len();
                     for row in &made.rows {

@@ -3,7 +3,7 @@
 use fuzzy::drawing::short;
 
 use super::tally::RowCount;
-use crate::output::say;
+use crate::output::print_note;
 
 /// The number of worst rows that are listed.
 const WORST: usize = 5;
@@ -57,13 +57,13 @@ impl Errors {
     }
 
     /// Prints the errors on standard error if there are measured values.
-    pub(super) fn say(&self, output: &str) {
+    pub(super) fn print_notes(&self, output: &str) {
         if let Some(line) = self.unmeasured.first_line() {
             let rows = match self.unmeasured.count() {
                 1 => "1 row".to_owned(),
                 count => format!("{count} rows"),
             };
-            say(&format!(
+            print_note(&format!(
                 "`{output}` is not compared in {rows}, whose measured value is not a number (first in line {line})"
             ));
         }
@@ -72,7 +72,7 @@ impl Errors {
         }
         let rows = self.rows as f64;
         let (rms, mean) = ((self.sum_of_squares / rows).sqrt(), self.sum / rows);
-        say(&format!(
+        print_note(&format!(
             "`{output}` against its measured values in {} rows: RMS error {}, mean error {} (computed less measured)",
             self.rows,
             short(rms),
@@ -80,7 +80,7 @@ impl Errors {
         ));
         for (line, computed, measured) in self.worst.iter().filter(|(_, c, m)| c != m) {
             let (computed, measured) = (short(*computed), short(*measured));
-            say(&format!(
+            print_note(&format!(
                 "  line {line}: {computed} computed, {measured} measured"
             ));
         }

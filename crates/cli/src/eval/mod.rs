@@ -181,7 +181,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         failed.map_or(written, Err)?;
         tally
     };
-    tally.say(&plan);
+    tally.print_notes(&plan);
     Ok(if tally.is_complete(&plan) {
         Exit::Clean
     } else {

@@ -1,7 +1,7 @@
 //! Counts of rows, for the report at the end.
 
 use super::{Plan, errors::Errors};
-use crate::{output::say, table::Extent};
+use crate::{output::print_note, table::Extent};
 
 /// Maximum number of bad rows that are reported individually.
 const SHOWN: usize = 20;
@@ -109,31 +109,31 @@ impl Tally {
     }
 
     /// Prints the counts on standard error.
-    pub(super) fn say(&self, plan: &Plan) {
+    pub(super) fn print_notes(&self, plan: &Plan) {
         if self.rows == 0 {
-            say(&format!("`{}` has a header, but no rows", plan.header.file));
+            print_note(&format!("`{}` has a header, but no rows", plan.header.file));
         }
         let of = |rows: RowCount| format!("{} of {} rows", rows.count, self.rows);
         let first = |rows: RowCount| format!("first in line {}", rows.first_line);
         for bad in &self.shown {
-            say(bad);
+            print_note(bad);
         }
         if self.bad.count > 0 {
             let more = self.bad.count - self.shown.len() as u64;
             if more > 0 {
-                say(&format!("and {more} more"));
+                print_note(&format!("and {more} more"));
             }
             let what = match plan.skip_bad_rows {
                 true => "left out",
                 false => "no value in",
             };
-            say(&format!("{what} {}: they cannot be read", of(self.bad)));
+            print_note(&format!("{what} {}: they cannot be read", of(self.bad)));
             if self.has_misfit {
-                say(&format!("help: {}", plan.header.misfit_help()));
+                print_note(&format!("help: {}", plan.header.misfit_help()));
             }
         }
         if self.unknown.count > 0 {
-            say(&format!(
+            print_note(&format!(
                 "no value in {}: an input is unknown ({})",
                 of(self.unknown),
                 first(self.unknown)
@@ -145,7 +145,7 @@ impl Tally {
                     true => "no rule fires, or a formula has no finite value",
                     false => "no rule fires",
                 };
-                say(&format!(
+                print_note(&format!(
                     "`{output}` has no value in {}: {why} ({})",
                     of(*rows),
                     first(*rows)
@@ -153,17 +153,17 @@ impl Tally {
             }
         }
         for (output, errors) in plan.engine.output_names().zip(&self.errors) {
-            errors.say(output);
+            errors.print_notes(output);
         }
         let inputs = &plan.engine.model().inputs;
         for (input, extent) in inputs.iter().zip(&self.extents) {
             if let Some(warning) = extent.warning(input) {
-                say(&warning);
+                print_note(&warning);
             }
         }
         for (input, rows) in inputs.iter().zip(&self.clamped) {
             if rows.count > 0 {
-                say(&format!(
+                print_note(&format!(
                     "`{}` is outside its range from {} to {} in {} and clamped to it ({})",
                     input.name,
                     input.low,

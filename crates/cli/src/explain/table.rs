@@ -62,7 +62,7 @@ pub(super) fn explain(
     }
     if let Some(first) = skipped.first() {
         let count = skipped.len();
-        output::say(&format!(
+        output::print_note(&format!(
             "left out {count} of {rows} rows: they cannot be read (first: {first})"
         ));
     }

@@ -137,15 +137,15 @@ impl Arrays {
             self.add_array(array.field, &array);
         }
         self.add_array("stages", &Array::new("stages", "Stage", rules.stages));
-        self.add_array("places", &Array::new("places", "u32", rules.places));
-        let [conjunctions, actions_a_cell, first_action, sums] = table.conjunctions.code();
+        self.add_array("indices", &Array::new("indices", "u32", rules.indices));
+        let [conjunctions, actions_per_cell, first_action, sums] = table.conjunctions.code();
         let sizes = table.sizes;
         let fields = [
             ("format", "FLAGRED_FORMAT".to_owned()),
             ("and_operator", (table.and as u32).to_string()),
             ("or_operator", (table.or as u32).to_string()),
             ("conjunctions", conjunctions.to_string()),
-            ("actions_a_cell", actions_a_cell.to_string()),
+            ("actions_per_cell", actions_per_cell.to_string()),
             ("first_action", first_action.to_string()),
             ("sums", sums.to_string()),
             ("degrees", sizes.degrees.to_string()),

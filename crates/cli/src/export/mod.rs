@@ -22,7 +22,7 @@ use fuzzy::drawing::visible;
 use crate::{
     diagnostics::is_meant_as_rules,
     failure::{Exit, Failure},
-    output::{self, Files, Replace, say},
+    output::{self, Files, Replace, print_note},
     profile, rule_set,
 };
 
@@ -99,7 +99,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     let output = Files::reading(&loaded.files)?.output(&arguments.output, Replace::Yes)?;
     output.write(&profile_code(&loaded.estimator, arguments.language())?)?;
-    arguments.tell_built_in("profile");
+    arguments.note_built_in("profile");
     Ok(Exit::Clean)
 }
 
@@ -167,10 +167,10 @@ impl Arguments {
     }
 
     /// Prints a note if the default profile or rule set was written to a file.
-    fn tell_built_in(&self, what: &str) {
+    fn note_built_in(&self, what: &str) {
         if self.file == profile::DEFAULT && self.output != Path::new("-") {
             let written = self.output.display();
-            say(&format!(
+            print_note(&format!(
                 "wrote `{written}`: the built-in {what} `{}`",
                 self.file
             ));
@@ -208,16 +208,17 @@ fn to_program(arguments: &Arguments, format: Format) -> Result<Exit, Failure> {
         true => Losses::Accept,
         false => Losses::Refuse,
     };
-    let tell = |findings: &fuzzy::Findings| findings.to_string().lines().for_each(say);
+    let print_findings =
+        |findings: &fuzzy::Findings| findings.to_string().lines().for_each(print_note);
     match flagred_interchange::write(model, format, losses) {
         Ok(written) => {
-            tell(&written.findings);
+            print_findings(&written.findings);
             output.write(&written.text)?;
-            arguments.tell_built_in("rule set");
+            arguments.note_built_in("rule set");
             Ok(Exit::Clean)
         }
         Err(findings) => {
-            tell(&findings);
+            print_findings(&findings);
             let message = format!(
                 "`{}` cannot be written as {}",
                 arguments.file,
@@ -360,7 +361,7 @@ fn bytes(plan: &Plan<'_>) -> usize {
 fn bytes_of_rules(rules: &Rules<'_>) -> usize {
     let arrays = arrays(&rules.table);
     let table: usize = arrays.iter().map(|array| array.bytes).sum();
-    table + size_of_val(rules.stages) + size_of_val(rules.places)
+    table + size_of_val(rules.stages) + size_of_val(rules.indices)
 }
 
 /// Joins items into lines of about a hundred characters.

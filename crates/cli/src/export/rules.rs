@@ -17,7 +17,7 @@ use fuzzy::{
 use super::{Arguments, Language, bytes_of_rules, c, harmless, rust};
 use crate::{
     failure::{Exit, Failure},
-    output::{Files, Replace, say},
+    output::{Files, Replace, print_note},
     rule_set,
 };
 
@@ -31,7 +31,7 @@ pub(super) fn export(arguments: &Arguments, source: &Source) -> Result<Exit, Fai
     let output = Files::reading([Path::new(file)])?.output(&arguments.output, Replace::Yes)?;
     let (text, warnings) = code((model, file), arguments.language(), arguments.lossy)?;
     for warning in warnings {
-        say(&format!("warning: {warning}"));
+        print_note(&format!("warning: {warning}"));
     }
     output.write(&text)?;
     Ok(Exit::Clean)

@@ -199,7 +199,7 @@ fn fields(out: &mut String, depth: usize, rules: &Rules<'_>) {
     fields_of_table(out, depth, "table: Table {", &rules.table);
     line_of(out, format_args!("{indent}}},"));
     items(out, depth, "stages", &debug(rules.stages));
-    items(out, depth, "places", &debug(rules.places));
+    items(out, depth, "indices", &debug(rules.indices));
 }
 
 /// Writes the fields of a table, which starts with the line `head`.

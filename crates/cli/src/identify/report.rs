@@ -13,7 +13,7 @@ use serde::Serialize;
 use super::{Arguments, IdentifyOutcome};
 use crate::{
     failure::Failure,
-    left_out::{self, ConfusionDocument, IntervalDocument, divided, figure},
+    held_out::{self, ConfusionDocument, IntervalDocument, divided, figure},
     provenance,
 };
 
@@ -52,7 +52,7 @@ pub(super) fn words(
     arguments: &Arguments,
     outcome: &IdentifyOutcome,
 ) -> std::io::Result<()> {
-    left_out::rows(out, outcome.rows, &outcome.refused)?;
+    held_out::rows(out, outcome.rows, &outcome.refused)?;
     writeln!(out, "columns     {} examined", outcome.columns)?;
     for name in outcome.without_numbers.iter().take(SHOWN) {
         writeln!(out, "            `{}` contains no number", visible(name))?;
@@ -71,13 +71,13 @@ pub(super) fn words(
     let width = width.unwrap_or(0);
     for (i, (step, change)) in identified.steps.iter().zip(&changes).enumerate() {
         let title = if i == 0 { "steps" } else { "" };
-        let left_out = short(step.left_out);
-        let said = if i == 0 {
+        let left_out = short(step.cv_error);
+        let note = if i == 0 {
             " cross-validation error (RMS)"
         } else {
             ""
         };
-        writeln!(out, "{title:<11} {change:<width$}  {left_out}{said}")?;
+        writeln!(out, "{title:<11} {change:<width$}  {left_out}{note}")?;
     }
     let missing = match identified.without_rows {
         0 => String::new(),
@@ -92,13 +92,13 @@ pub(super) fn words(
         if inputs == 1 { "" } else { "s" }
     )?;
     if let Some(validation) = &outcome.validation {
-        worth(out, arguments, validation)?;
+        cross_validation(out, arguments, validation)?;
     }
     Ok(())
 }
 
 /// Writes the cross-validation error of the whole search.
-fn worth(
+fn cross_validation(
     out: &mut dyn Write,
     arguments: &Arguments,
     validation: &IdentifyValidation,
@@ -108,7 +108,7 @@ fn worth(
         out,
         "left out    {} cross-validation error (RMS) of the whole search ({} of {parts}, 95 % intervals)",
         figure(&validation.identified),
-        left_out::folds(validation.folds)
+        held_out::folds(validation.folds)
     )?;
     let ratio = match validation.ratio {
         ratio if ratio.value < 100.0 => format!("the first is {} of it", figure(&ratio)),
@@ -121,7 +121,7 @@ fn worth(
     )?;
     writeln!(out, "            {} of the mean", figure(&validation.mean))?;
     if let Some(confusion) = &validation.confusion {
-        left_out::confusion(out, confusion, |_| None)?;
+        held_out::confusion(out, confusion, |_| None)?;
     }
     if validation.without_value > 0 {
         writeln!(
@@ -208,7 +208,7 @@ impl<'a> Document<'a> {
         let steps = identified.steps.iter().map(|step| IdentifyStepDocument {
             input: &step.input,
             terms: step.terms,
-            left_out: step.left_out,
+            left_out: step.cv_error,
         });
         let inputs = identified.model.inputs.iter();
         Document {

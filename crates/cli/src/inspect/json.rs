@@ -41,7 +41,7 @@ pub(crate) struct Document<'a> {
     in_air: Option<&'a Intervals>,
     /// All signals except the motor commands.
     signals: Vec<Signal<'a>>,
-    /// The flight modes, from the time each was entered.
+    /// The flight modes, each with the time at which it was entered.
     modes: &'a [Event],
     /// The texts of the autopilot.
     messages: &'a [Event],

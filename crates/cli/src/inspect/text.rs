@@ -308,7 +308,7 @@ mod tests {
     use super::utc;
 
     #[test]
-    fn dates() {
+    fn seconds_since_1970_are_shown_as_dates() {
         for (seconds, text) in [
             (0.0, "1970-01-01 00:00:00 UTC"),
             (951_782_399.0, "2000-02-28 23:59:59 UTC"),

@@ -9,7 +9,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Arguments, LearnOutcome};
-use crate::{failure::Failure, left_out::listed, provenance, rows::word};
+use crate::{failure::Failure, held_out::listed, provenance, rows::word};
 
 /// The rule set with a provenance step for this command. Degrees are rounded to six digits for readability.
 pub(super) fn rule_set(

@@ -5,7 +5,7 @@ use std::io::{self, BufRead, Read};
 use fuzzy::diagnostic::quoted;
 use lsp_server::Message;
 
-use crate::output::say;
+use crate::output::print_note;
 
 /// Maximum number of bytes of a message: the largest rule set, with every fourth character escaped.
 const LONGEST: u64 = 16_000_000;
@@ -20,7 +20,7 @@ const LONGEST_LINE: u64 = 4096;
 pub(super) fn read<R: BufRead>(from: &mut R) -> io::Result<Option<Message>> {
     while let Some(length) = head(from)? {
         if length > LONGEST {
-            say(&format!(
+            print_note(&format!(
                 "a message of {length} bytes is skipped: the limit is {LONGEST}"
             ));
             io::copy(&mut from.by_ref().take(length), &mut io::sink())?;
@@ -33,7 +33,7 @@ pub(super) fn read<R: BufRead>(from: &mut R) -> io::Result<Option<Message>> {
         }
         match serde_json::from_slice(&text) {
             Ok(message) => return Ok(Some(message)),
-            Err(error) => say(&format!("a message is skipped: {error}")),
+            Err(error) => print_note(&format!("a message is skipped: {error}")),
         }
     }
     Ok(None)

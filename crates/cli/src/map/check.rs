@@ -95,7 +95,7 @@ pub(super) fn against(
     }
     out.finish()?;
     if let Some(other) = suffixes.first().filter(|_| suffix.is_empty()) {
-        output::say(&format!(
+        output::print_note(&format!(
             "help: if `eval --suffix {other}` wrote the table, add `--suffix {other}`: the columns without it contain measured values"
         ));
     }

@@ -257,7 +257,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     let shown = evaluated.engine.model().outputs.get(evaluated.output);
     if let Some(shown) = shown.filter(|shown| shown.keeps_previous()) {
-        output::say(&format!(
+        output::print_note(&format!(
             "note: `{}` keeps its previous value where no rule fires; the cells of a map have no previous value",
             visible(&shown.variable.name)
         ));
@@ -277,7 +277,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     let (slice, notes) = slice::cut(arguments, &evaluated)?;
     for note in notes {
-        output::say(&format!("note: {note}"));
+        output::print_note(&format!("note: {note}"));
     }
     let model = evaluated.engine.model();
     match &svg {

@@ -6,7 +6,7 @@ use fuzzy::model::Variable;
 use super::{MapSource, table};
 use crate::failure::Failure;
 
-/// Returns a table of the output at `count` points that are spread over the inputs.
+/// Returns a table of the output at the given number of points, which are spread over the inputs.
 pub(super) fn table(evaluated: &MapSource, points: u32) -> Result<String, Failure> {
     let mapped = evaluated.mapped();
     let inputs = &evaluated.engine.model().inputs;

@@ -96,7 +96,7 @@ pub(super) fn axes(arguments: &Arguments, evaluated: &MapSource) -> Result<Axes,
     let x_axis =
         axis(x, &arguments.x).ok_or_else(|| Failure::usage("the rule set has no inputs"))?;
     let y_axis = y.and_then(|y| axis(y, &arguments.y));
-    let middle = slice::held(&evaluated.mapped(), &fixed, (x, y));
+    let middle = slice::fixed_values(&evaluated.mapped(), &fixed, (x, y));
     Ok(Axes {
         x: (x, x_axis),
         y: y.zip(y_axis),
@@ -137,8 +137,8 @@ pub(super) fn cut(
             )
         });
     let named = |name: &str| arguments.hold.iter().any(|(fixed, _)| fixed == name);
-    let unnamed = slice.held.iter().filter(|(name, _)| !named(name));
-    let held_at = unnamed.map(|(name, value)| {
+    let unnamed = slice.fixed.iter().filter(|(name, _)| !named(name));
+    let fixed_at = unnamed.map(|(name, value)| {
         format!(
             "`{name}` is fixed at {}; to fix another value: `--hold {name}=VALUE`",
             short(*value)
@@ -157,6 +157,6 @@ pub(super) fn cut(
             )
         })
     });
-    let notes: Vec<String> = held_at.chain(parts).chain(beyond).collect();
+    let notes: Vec<String> = fixed_at.chain(parts).chain(beyond).collect();
     Ok((slice, notes))
 }

@@ -21,7 +21,7 @@ pub(super) fn text(arguments: &Arguments, evaluated: &MapSource) -> Result<Strin
     if others.iter().all(|(_, peaks)| peaks.len() == 1) {
         let (slice, notes) = slice::cut(arguments, evaluated)?;
         for note in notes {
-            output::say(&format!("note: {note}"));
+            output::print_note(&format!("note: {note}"));
         }
         return Ok(map_text(&slice, painted) + &values_text(&slice, shown));
     }

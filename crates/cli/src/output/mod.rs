@@ -117,7 +117,7 @@ pub(crate) fn is_terminal(output: Option<&Output>) -> bool {
 }
 
 /// Prints a note on standard error, in one line.
-pub(crate) fn say(note: &str) {
+pub(crate) fn print_note(note: &str) {
     // If standard error is closed, there is no other way to report that.
     let _ = writeln!(anstream::stderr(), "{}", visible(note));
 }

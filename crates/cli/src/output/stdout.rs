@@ -68,7 +68,7 @@ impl Write for Stdout {
 }
 
 impl Pipe {
-    fn tell<T>(&mut self, result: io::Result<T>, dropped: T) -> io::Result<T> {
+    fn ignore_closed_pipe<T>(&mut self, result: io::Result<T>, dropped: T) -> io::Result<T> {
         match result {
             Err(error) if error.kind() == io::ErrorKind::BrokenPipe => {
                 self.is_closed = true;
@@ -88,7 +88,7 @@ impl Write for Pipe {
             Stream::Out(out) => out.write(bytes),
             Stream::Err(err) => err.write(bytes),
         };
-        self.tell(written, bytes.len())
+        self.ignore_closed_pipe(written, bytes.len())
     }
 
     fn flush(&mut self) -> io::Result<()> {
@@ -99,6 +99,6 @@ impl Write for Pipe {
             Stream::Out(out) => out.flush(),
             Stream::Err(err) => err.flush(),
         };
-        self.tell(flushed, ())
+        self.ignore_closed_pipe(flushed, ())
     }
 }

@@ -12,9 +12,9 @@ use std::{
 const HEAD: usize = 16_384;
 const HEADERS: usize = 64;
 /// Time limit for a request, including the remainder that is read after the answer.
-const PATIENCE: Duration = Duration::from_secs(10);
+const REQUEST_TIMEOUT: Duration = Duration::from_secs(10);
 /// Time limit for the answer: the page may be sent through a slow tunnel.
-const PATIENCE_TO_ANSWER: Duration = Duration::from_secs(60);
+const RESPONSE_TIMEOUT: Duration = Duration::from_secs(60);
 /// Maximum number of bytes of a refused body that are read, so that the sender can receive the
 /// answer.
 const DRAINED: u64 = 64_000_000;
@@ -26,7 +26,7 @@ pub(super) struct Request<S> {
     pub(super) path: String,
     headers: Vec<(String, String)>,
     /// The beginning of the body, which arrived with the head.
-    begun: Vec<u8>,
+    body_start: Vec<u8>,
     stream: S,
 }
 
@@ -75,8 +75,12 @@ impl<S: Read> Request<S> {
             let mut headers = [httparse::EMPTY_HEADER; HEADERS];
             let mut parsed = httparse::Request::new(&mut headers);
             let status = parsed.parse(&bytes).map_err(|error| match error {
-                httparse::Error::TooManyHeaders => Status::HEAD_TOO_LARGE.says("too many headers"),
-                error => Status::BAD_REQUEST.says(&format!("the request cannot be read: {error}")),
+                httparse::Error::TooManyHeaders => {
+                    Status::HEAD_TOO_LARGE.refusal("too many headers")
+                }
+                error => {
+                    Status::BAD_REQUEST.refusal(&format!("the request cannot be read: {error}"))
+                }
             })?;
             if let httparse::Status::Complete(length) = status {
                 let headers = parsed.headers.iter().map(|header| {
@@ -88,12 +92,12 @@ impl<S: Read> Request<S> {
                     method: parsed.method.unwrap_or_default().to_owned(),
                     path: path.split('?').next().unwrap_or_default().to_owned(),
                     headers: headers.collect(),
-                    begun: bytes.split_off(length),
+                    body_start: bytes.split_off(length),
                     stream,
                 }));
             }
             if bytes.len() >= HEAD {
-                return Err(Status::HEAD_TOO_LARGE.says("the head of the request is too large"));
+                return Err(Status::HEAD_TOO_LARGE.refusal("the head of the request is too large"));
             }
             let mut buffer = [0; 4096];
             match stream.read(&mut buffer) {
@@ -101,7 +105,7 @@ impl<S: Read> Request<S> {
                     bytes.extend_from_slice(buffer.get(..count).unwrap_or_default());
                 }
                 _ if bytes.is_empty() => return Ok(None),
-                _ => return Err(Status::BAD_REQUEST.says("the request ends too early")),
+                _ => return Err(Status::BAD_REQUEST.refusal("the request ends too early")),
             }
         }
     }
@@ -121,37 +125,37 @@ impl<S: Read> Request<S> {
                 None => Status::LENGTH_REQUIRED,
                 Some(_) => Status::BAD_REQUEST,
             };
-            return Err(status.says("send the text with its length, not in chunks"));
+            return Err(status.refusal("send the text with its length, not in chunks"));
         }
         if self.header("content-encoding").is_some() {
-            return Err(Status::BAD_REQUEST.says("send the text without a content encoding"));
+            return Err(Status::BAD_REQUEST.refusal("send the text without a content encoding"));
         }
         let length = length
             .and_then(|length| length.parse::<usize>().ok())
-            .ok_or_else(|| Status::LENGTH_REQUIRED.says("the length of the text is missing"))?;
+            .ok_or_else(|| Status::LENGTH_REQUIRED.refusal("the length of the text is missing"))?;
         if length > limit {
             let limit = limit / 1_000_000;
             return Err(
-                Status::CONTENT_TOO_LARGE.says(&format!("the text is larger than {limit} MB"))
+                Status::CONTENT_TOO_LARGE.refusal(&format!("the text is larger than {limit} MB"))
             );
         }
-        let mut bytes = std::mem::take(&mut self.begun);
+        let mut bytes = std::mem::take(&mut self.body_start);
         while bytes.len() < length {
             let mut buffer = [0; 16_384];
             match self.stream.read(&mut buffer) {
                 Ok(count) if count > 0 => {
                     bytes.extend_from_slice(buffer.get(..count).unwrap_or_default());
                 }
-                _ => return Err(Status::BAD_REQUEST.says("the text ends too early")),
+                _ => return Err(Status::BAD_REQUEST.refusal("the text ends too early")),
             }
         }
         bytes.truncate(length);
-        String::from_utf8(bytes).map_err(|_| Status::BAD_REQUEST.says("the text is not UTF-8"))
+        String::from_utf8(bytes).map_err(|_| Status::BAD_REQUEST.refusal("the text is not UTF-8"))
     }
 }
 
 impl Status {
-    pub(super) fn says(self, words: &str) -> Refusal {
+    pub(super) fn refusal(self, words: &str) -> Refusal {
         Refusal::new(self, words)
     }
 }
@@ -230,13 +234,13 @@ pub(super) fn serve<'a>(
     stream: &TcpStream,
     respond: impl FnOnce(&mut Request<&mut DeadlineStream<'_>>) -> Response<'a>,
 ) -> io::Result<()> {
-    let mut reading = DeadlineStream::new(stream, PATIENCE);
+    let mut reading = DeadlineStream::new(stream, REQUEST_TIMEOUT);
     let (response, with_body) = match Request::read(&mut reading) {
         Ok(None) => return Ok(()),
         Ok(Some(mut request)) => (respond(&mut request), request.method != "HEAD"),
         Err(refusal) => (refusal.into(), true),
     };
-    DeadlineStream::new(stream, PATIENCE_TO_ANSWER).write_all(&response.bytes(with_body))?;
+    DeadlineStream::new(stream, RESPONSE_TIMEOUT).write_all(&response.bytes(with_body))?;
     stream.shutdown(Shutdown::Write)?;
     // If the connection were closed with unread input, it would be reset and the answer would be lost.
     reading.end = reading.end.min(Instant::now() + Duration::from_secs(1));

@@ -88,7 +88,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let (listener, address) = TcpListener::bind((Ipv4Addr::LOCALHOST, arguments.port))
         .and_then(|listener| listener.local_addr().map(|address| (listener, address)))
         .map_err(|error| cannot_serve(arguments.port, &error))?;
-    let said = file.as_ref().map(|file| match file.read_only {
+    let file_line = file.as_ref().map(|file| match file.read_only {
         None => format!("edits `{}`", file.name()),
         Some("") => format!("shows `{}`, read only", file.name()),
         Some(why) => format!("shows `{}`, read only: {why}", file.name()),
@@ -96,8 +96,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let server = Arc::new(Server::new(address, page, file)?);
     let mut out = Stdout::text();
     writeln!(out, "{}", server.address())?;
-    if let Some(said) = said {
-        writeln!(out, "{}", visible(&said))?;
+    if let Some(line) = file_line {
+        writeln!(out, "{}", visible(&line))?;
     }
     writeln!(out, "Ctrl-C ends it")?;
     out.finish()?;
@@ -106,7 +106,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if !arguments.no_browser
         && let Err(error) = open::that_detached(server.address_once())
     {
-        output::say(&format!("no browser could be opened: {error}"));
+        output::print_note(&format!("no browser could be opened: {error}"));
     }
     // An error means that no interrupt can arrive any more.
     let _ = interrupted.recv();

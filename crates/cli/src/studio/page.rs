@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn the_policy_is_that_of_the_page() {
+    fn the_policy_is_read_from_the_page() {
         let html = "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'sha256-x='\">";
         let page = built_in(&packed(html)).unwrap();
         assert_eq!(page.policy, "default-src 'none'; script-src 'sha256-x='");
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn a_policy_is_one_line_of_a_header() {
+    fn a_policy_with_a_line_break_is_rejected() {
         let split = "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src *;\r\nSet-Cookie: a=b\">";
         assert!(page(split.to_owned()).is_none());
         assert!(page("<html></html>".to_owned()).is_none());

@@ -2,7 +2,7 @@
 //!
 //! Every user of the machine can connect, and every page in a browser can send requests here.
 //! Therefore the path begins with a token that cannot be guessed, the `Host` header must name the
-//! served address (another site could use a host name that resolves to it), and requests of other
+//! served address (another site could use a host name that resolves to it), and requests from other
 //! pages are refused.
 
 use std::{
@@ -108,13 +108,13 @@ impl Server {
 
     fn answer<S: Read>(&self, request: &mut Request<S>) -> Result<Response<'_>, Refusal> {
         if request.header("host").as_deref() != Some(&self.authority) {
-            return Err(Status::FORBIDDEN.says("requests under this host name are refused"));
+            return Err(Status::FORBIDDEN.refusal("requests under this host name are refused"));
         }
         let own = format!("http://{}", self.authority);
         if request.header("origin").is_some_and(|origin| origin != own) {
-            return Err(Status::FORBIDDEN.says("requests from other pages are refused"));
+            return Err(Status::FORBIDDEN.refusal("requests from other pages are refused"));
         }
-        let unknown = || Status::NOT_FOUND.says("there is nothing at this address");
+        let unknown = || Status::NOT_FOUND.refusal("there is nothing at this address");
         let path = request.path.strip_prefix('/').ok_or_else(unknown)?;
         let (first, rest) = path.split_once('/').ok_or_else(unknown)?;
         let is_page = first == self.token;
@@ -124,7 +124,8 @@ impl Server {
             ("api/file", "GET" | "HEAD") if is_page => self.read(request),
             ("api/file", "PUT") if is_page => self.save(request),
             ("" | "api/file", _) if is_page => {
-                Err(Status::METHOD_NOT_ALLOWED.says("this method is not supported at this address"))
+                Err(Status::METHOD_NOT_ALLOWED
+                    .refusal("this method is not supported at this address"))
             }
             _ => Err(unknown()),
         }
@@ -132,7 +133,7 @@ impl Server {
 
     fn lead(&self) -> Result<Response<'_>, Refusal> {
         if self.is_used.swap(true, Ordering::Relaxed) {
-            return Err(Status::NOT_FOUND.says(
+            return Err(Status::NOT_FOUND.refusal(
                 "this address was already opened; use the one that `flagred studio` printed. If you did not open it yourself, stop `flagred studio`",
             ));
         }
@@ -190,12 +191,12 @@ impl Server {
         let file = self
             .file
             .as_ref()
-            .ok_or_else(|| Status::NOT_FOUND.says("there is no file to save to"))?;
+            .ok_or_else(|| Status::NOT_FOUND.refusal("there is no file to save to"))?;
         let expected = request
             .header("if-match")
-            .ok_or_else(|| Status::PRECONDITION_REQUIRED.says("`If-Match` is missing"))?;
+            .ok_or_else(|| Status::PRECONDITION_REQUIRED.refusal("`If-Match` is missing"))?;
         if file.read_only.is_some() {
-            return Err(Status::FORBIDDEN.says(&format!("`{}` is read only", file.name())));
+            return Err(Status::FORBIDDEN.refusal(&format!("`{}` is read only", file.name())));
         }
         let text = request.body(LARGEST_BYTES)?;
         let _saving = self.saving.lock().unwrap_or_else(PoisonError::into_inner);
@@ -207,14 +208,14 @@ impl Server {
             }),
             SaveResult::Changed => {
                 let words = format!("`{}` was changed on disk meanwhile", file.name());
-                Err(Status::PRECONDITION_FAILED.says(&words))
+                Err(Status::PRECONDITION_FAILED.refusal(&words))
             }
         }
     }
 }
 
 fn failed(failure: Failure) -> Refusal {
-    Status::INTERNAL_ERROR.says(&failure.to_string())
+    Status::INTERNAL_ERROR.refusal(&failure.to_string())
 }
 
 /// Returns a random secret, in digits and letters.

@@ -7,7 +7,7 @@ use std::{
 };
 
 /// Maximum number of such connections; a browser opens about six.
-const MOST: usize = 64;
+const MAX_CONNECTIONS: usize = 64;
 
 /// Connections that have not sent the token yet, the oldest first.
 #[derive(Default)]
@@ -29,7 +29,7 @@ impl UnauthenticatedConnections {
         if let Ok(stream) = stream.try_clone() {
             queue.open.push_back((number, stream));
         }
-        if queue.open.len() > MOST
+        if queue.open.len() > MAX_CONNECTIONS
             && let Some((_, oldest)) = queue.open.pop_front()
         {
             // This fails if the connection is closed already.

@@ -154,8 +154,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     arguments.rows.claims.check_inputs(original)?;
     let settings = settings(arguments)?;
     let resumed = resumed(arguments, original, &settings)?;
-    let begun = resumed.as_ref().unwrap_or(original);
-    let (data, refused) = data(arguments, begun)?;
+    let start = resumed.as_ref().unwrap_or(original);
+    let (data, refused) = data(arguments, start)?;
     let failed = |error: TuneError| match &error {
         TuneError::Unknown { name: unknown } if unknown.contains(',') => {
             let option = if arguments.only.contains(unknown) {
@@ -174,7 +174,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Failure::unreadable(format!("cannot set the handler for Ctrl-C: {error}"))
     })?;
     let mut watch = SearchObserver::new(arguments, stop, checkpoint.as_ref());
-    let tuned = tune(begun, &data, &settings, &mut |progress| {
+    let tuned = tune(start, &data, &settings, &mut |progress| {
         watch.step(progress, None)
     });
     let tuned = tuned.map_err(failed)?;
@@ -190,10 +190,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         }
     };
     let curve = match &validation {
-        Some(worth) if arguments.learning_curve => {
+        Some(validation) if arguments.learning_curve => {
             let mut reported = |_: u32, _: &Progress<'_>| watch.more("learning curve");
             let folds = arguments.folds;
-            learning_curve(original, &data, &settings, folds, worth, &mut reported)
+            learning_curve(original, &data, &settings, folds, validation, &mut reported)
                 .map_err(failed)?
         }
         _ => None,
@@ -208,7 +208,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         is_resumed: resumed.is_some(),
     };
     if let Some(warning) = warning(&outcome) {
-        output::say(&warning);
+        output::print_note(&warning);
     }
     let mut texts = vec![(
         &output,
@@ -458,7 +458,7 @@ impl<'a> SearchObserver<'a> {
                 && !std::mem::replace(&mut self.is_refused, true)
             {
                 let note = format!("{}; the search continues", failure.message());
-                self.bar.suspend(|| output::say(&note));
+                self.bar.suspend(|| output::print_note(&note));
             }
         }
         self.flow()

@@ -13,7 +13,7 @@ use serde::Serialize;
 use super::{Arguments, LossName, TuneOutcome};
 use crate::{
     failure::Failure,
-    left_out::{self, ConfusionDocument, IntervalDocument, divided, figure},
+    held_out::{self, ConfusionDocument, IntervalDocument, divided, figure},
     provenance,
     rows::word,
 };
@@ -75,7 +75,7 @@ pub(super) fn words(
     outcome: &TuneOutcome,
 ) -> std::io::Result<()> {
     let tuned = &outcome.tuned;
-    left_out::rows(out, outcome.rows, &outcome.refused)?;
+    held_out::rows(out, outcome.rows, &outcome.refused)?;
     if tuned.without_value > 0 {
         writeln!(
             out,
@@ -106,10 +106,10 @@ pub(super) fn words(
             figure(&validation.before),
             figure(&validation.after),
             figure(&validation.gain),
-            left_out::folds(validation.folds)
+            held_out::folds(validation.folds)
         )?;
         for (i, bin) in validation.reliability.iter().enumerate() {
-            let (title, said) = match i {
+            let (title, note) = match i {
                 0 => ("reliability", " left out"),
                 _ => ("", ""),
             };
@@ -120,14 +120,14 @@ pub(super) fn words(
             } = bin;
             writeln!(
                 out,
-                "{title:<11} {predicted:.3} predicted, {observed:.3} observed, {rows} rows{said}"
+                "{title:<11} {predicted:.3} predicted, {observed:.3} observed, {rows} rows{note}"
             )?;
         }
         if let Some(confusion) = &validation.confusion {
             let model = &outcome.tuned.model;
             let output = model.measured_output();
             let output = output.and_then(|output| model.outputs.get(output));
-            left_out::confusion(out, confusion, |class| {
+            held_out::confusion(out, confusion, |class| {
                 let terms = &output?.variable.terms;
                 let is_class = |term: &&Term| term.membership_function.number() == Some(class);
                 Some(terms.iter().find(is_class)?.name.clone())
@@ -136,15 +136,15 @@ pub(super) fn words(
     }
     for (i, point) in outcome.curve.iter().flatten().enumerate() {
         let title = if i == 0 { "curve" } else { "" };
-        let left_out = short(point.left_out);
-        let said = if i == 0 {
+        let left_out = short(point.unseen_loss);
+        let note = if i == 0 {
             " cross-validated, tuned on this share of the other rows"
         } else {
             ""
         };
         writeln!(
             out,
-            "{title:<11} {:>5.1} %  {left_out}{said}",
+            "{title:<11} {:>5.1} %  {left_out}{note}",
             100.0 * point.share
         )?;
     }
@@ -326,7 +326,7 @@ impl<'a> Document<'a> {
             learning_curve: outcome.curve.as_ref().map(|curve| {
                 let points = curve.iter().map(|point| CurvePointDocument {
                     share: point.share,
-                    left_out: point.left_out,
+                    left_out: point.unseen_loss,
                 });
                 points.collect()
             }),

@@ -11,7 +11,7 @@ use flagred_flightlog::mavlink::{Packet, vehicle_of};
 use super::session::{Event, Session, SessionOutput, Source, VehicleView, may_be_multirotor};
 
 /// Maximum number of vehicles at a time.
-const MOST: usize = 1_000;
+const MAX_VEHICLES: usize = 1_000;
 /// Maximum number of vehicles in the summary that are no longer received.
 const MAX_GONE: usize = 10_000;
 /// A sender without evidence that it is a vehicle is dropped after this many seconds of silence.
@@ -71,7 +71,7 @@ impl<'e> Fleet<'e> {
         }
     }
 
-    /// Processes a packet, and calls `tell` with each event that it causes.
+    /// Processes a packet, and calls `report` with each event that it causes.
     pub(crate) fn receive(
         &mut self,
         now_s: f64,
@@ -89,7 +89,7 @@ impl<'e> Fleet<'e> {
             if !vehicle_of(packet).is_some_and(|vehicle| may_be_multirotor(&vehicle)) {
                 return;
             }
-            if self.members.len() >= MOST {
+            if self.members.len() >= MAX_VEHICLES {
                 self.refused += 1;
                 return;
             }
@@ -145,7 +145,11 @@ impl<'e> Fleet<'e> {
                 all.push(member.finish(id, &mut self.out, &mut report));
             }
         }
-        all.sort_by(|a, b| gravity(b).total_cmp(&gravity(a)).then(a.id.cmp(&b.id)));
+        all.sort_by(|a, b| {
+            severity_value(b)
+                .total_cmp(&severity_value(a))
+                .then(a.id.cmp(&b.id))
+        });
         all
     }
 
@@ -219,7 +223,7 @@ pub(crate) fn worst(all: &[Summary]) -> Verdict {
         .fold(none, |worst, one| one.verdict.clone().worst(worst))
 }
 
-fn gravity(summary: &Summary) -> f64 {
+fn severity_value(summary: &Summary) -> f64 {
     let verdict = match summary.verdict {
         Verdict::Known(level) => 200.0 * (1.0 + f64::from(level as u8)),
         Verdict::NotAvailable(Reason::NoFlight) => 0.0,
@@ -358,19 +362,19 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn strays_are_forgotten_and_vehicles_beyond_the_bound_are_counted() {
+    fn stray_senders_are_forgotten_and_vehicles_beyond_the_limit_are_counted() {
         let estimator = estimator();
         let mut fleet = Fleet::new(&estimator);
         let bytes = Sender::new(1).packet(Version::V2, 1, &quadrotor(false));
         let PacketScan::Packet(packet) = next_packet(&bytes) else {
             panic!("{bytes:?}");
         };
-        for link in 0..MOST + 7 {
+        for link in 0..MAX_VEHICLES + 7 {
             fleet.receive(0.0, (link, None), &packet, |_, _, _| {});
         }
-        assert_eq!((fleet.members.len(), fleet.refused), (MOST, 7));
+        assert_eq!((fleet.members.len(), fleet.refused), (MAX_VEHICLES, 7));
         fleet.tick(STRAY_S - 0.1, |_, _, _| {});
-        assert_eq!(fleet.members.len(), MOST);
+        assert_eq!(fleet.members.len(), MAX_VEHICLES);
         fleet.tick(STRAY_S, |_, _, _| {});
         assert!(fleet.members.is_empty() && fleet.finish(|_, _, _| {}).is_empty());
     }

@@ -12,7 +12,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{
-    lines::teller,
+    lines::finding_context,
     session::{ContactLoss, End, Event, FlightSummary, Session, StopReason, UntrustedCounts},
 };
 use flagred_report::document::FindingDocument;
@@ -248,8 +248,8 @@ pub(crate) fn line<'a>(
             })
         }
         Event::Ended { finding } => {
-            let teller = teller(view.as_ref(), estimator);
-            EventLine::Finding(FindingDocument::new(finding, teller))
+            let context = finding_context(view.as_ref(), estimator);
+            EventLine::Finding(FindingDocument::new(finding, context))
         }
         Event::Over { end, flown } => match end {
             End::Landed => EventLine::Landed(ObservedFlightLine::new(flown)),

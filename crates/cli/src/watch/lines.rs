@@ -145,12 +145,12 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
         },
         Event::Ended { finding } => {
             let view = session.view();
-            let teller = teller(view.as_ref(), estimator);
-            let advice = teller.words(finding).advice;
+            let context = finding_context(view.as_ref(), estimator);
+            let advice = context.words(finding).advice;
             format!(
                 "{} of {} {advice}",
                 finding.severity,
-                teller.finding(finding)
+                context.finding(finding)
             )
         }
         Event::Over { end, flown } => over(*end, flown),
@@ -192,7 +192,7 @@ fn over(end: End, flown: &FlightSummary) -> String {
                 flown.verdict
             )
         }
-        End::LeftInAir(StopReason::SetUpAnew) => format!(
+        End::LeftInAir(StopReason::Reconfigured) => format!(
             "{}: the flight so far; motors or limits became known late, the rest is assessed as a separate flight",
             flown.verdict
         ),
@@ -215,7 +215,7 @@ fn cause_of(lost: ContactLoss) -> &'static str {
     }
 }
 
-pub(super) fn teller<'a>(
+pub(super) fn finding_context<'a>(
     view: Option<&VehicleView<'a>>,
     estimator: &'a Estimator,
 ) -> FindingContext<'a> {

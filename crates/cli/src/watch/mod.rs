@@ -5,12 +5,12 @@ mod endpoint;
 mod fleet;
 pub(crate) mod jsonl;
 pub(crate) mod lines;
+mod messages;
 mod port;
 mod printer;
 pub(crate) mod screen;
 pub(crate) mod session;
 mod tlog;
-mod voice;
 
 use std::{
     fs::File,

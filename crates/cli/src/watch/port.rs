@@ -93,8 +93,8 @@ impl Port {
     ///
     /// # Errors
     ///
-    /// If another program uses the port, or permission is denied. If `waits` is false, also if the endpoint cannot be
-    /// opened for any other reason.
+    /// If another program uses the port, or permission is denied. If `waits` is false, any other reason for which the
+    /// endpoint cannot be opened is an error too.
     pub(crate) fn open(endpoint: &Endpoint, waits: bool) -> Result<Port, Failure> {
         let (kind, closed_because) = match open(endpoint) {
             Ok(kind) => (kind, None),

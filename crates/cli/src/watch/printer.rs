@@ -10,7 +10,7 @@ use std::{
 use crate::output;
 
 /// How long the program waits at its end for the last output to be read.
-const LAST_WORDS: Duration = Duration::from_secs(1);
+const FLUSH_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// Prints pieces of text in their order.
 pub(crate) struct Printer {
@@ -42,7 +42,7 @@ impl Printer {
                 if let Some(Ok(Err(error))) = ended
                     && error.kind() != io::ErrorKind::BrokenPipe
                 {
-                    output::say(&format!("standard output cannot be written: {error}"));
+                    output::print_note(&format!("standard output cannot be written: {error}"));
                 }
             }
             Some(Ok(())) | None => {}
@@ -65,7 +65,7 @@ impl Drop for Printer {
         self.pieces = None;
         let start = Instant::now();
         let busy = |thread: &JoinHandle<_>| !thread.is_finished();
-        while self.thread.as_ref().is_some_and(busy) && start.elapsed() < LAST_WORDS {
+        while self.thread.as_ref().is_some_and(busy) && start.elapsed() < FLUSH_TIMEOUT {
             thread::sleep(Duration::from_millis(2));
         }
     }

@@ -20,13 +20,13 @@ mod tracked_vehicle;
 mod trust;
 mod watch_sender;
 
-use super::voice;
+use super::messages;
 pub(crate) use event::{ContactLoss, End, Event, FlightSummary, SilentSource, StopReason};
 use flagred_report::finding::numbered;
 use history::ReceivedSample;
 pub(crate) use tracked_vehicle::VehicleView;
 use tracked_vehicle::{AssessedVehicle, TrackedVehicle, report};
-use trust::{Candidates, Proof, doubt_of};
+use trust::{Candidates, Evidence, doubt_of};
 pub(crate) use trust::{Source, UntrustedCounts, UntrustedPacket, may_be_multirotor};
 use watch_sender::WatchSender;
 
@@ -35,7 +35,7 @@ const HEARTBEAT_S: f64 = 1.0;
 /// Seconds between two sent risks. At this rate one arrives every second even if the link loses a tenth of its packets.
 const RISK_S: f64 = 0.25;
 /// A vehicle that sends no motor commands for this long despite requests is replaced by another one.
-const PROOF_S: f64 = 5.0;
+const CONFIRMATION_WAIT_S: f64 = 5.0;
 /// A vehicle that is silent for this long is replaced by a vehicle with another system id.
 const GONE_S: f64 = 30.0;
 /// Maximum number of other systems that are remembered: MAVLink has no more.
@@ -86,7 +86,7 @@ impl<'e> Session<'e> {
             heartbeat_s: None,
             worst: Verdict::NotAvailable(Reason::NoFlight),
             unknown_part: None,
-            history: history::MOST,
+            history: history::MAX_SAMPLES,
             range: None,
         }
     }
@@ -119,7 +119,7 @@ impl<'e> Session<'e> {
             return is_followed;
         }
         if !self.is_followed(source, packet) {
-            self.doubt(now_s, source, packet, out);
+            self.take_doubtful(now_s, source, packet, out);
             if !self.consider(now_s, source, packet, out) {
                 return false;
             }
@@ -144,7 +144,7 @@ impl<'e> Session<'e> {
                 add(&mut self.worst, verdict);
             }
             TelemetryChange::Commands { t_s } => {
-                if !std::mem::replace(&mut tracked.is_proved, true) {
+                if !std::mem::replace(&mut tracked.is_confirmed, true) {
                     let system = packet.system;
                     out.events.push(Event::Locked {
                         system,
@@ -190,7 +190,13 @@ impl<'e> Session<'e> {
     }
 
     /// Counts a doubtful packet of the vehicle's system. A second sender is not counted while the vehicle is silent.
-    fn doubt(&mut self, now_s: f64, source: Source, packet: &Packet<'_>, out: &mut SessionOutput) {
+    fn take_doubtful(
+        &mut self,
+        now_s: f64,
+        source: Source,
+        packet: &Packet<'_>,
+        out: &mut SessionOutput,
+    ) {
         let Some(tracked) = &self.tracked else {
             return;
         };
@@ -211,13 +217,13 @@ impl<'e> Session<'e> {
 
     /// Performs the periodic work that does not depend on packets. Must be called often.
     pub(crate) fn tick(&mut self, now_s: f64, out: &mut SessionOutput) {
-        self.ask(now_s, out);
+        self.send_requests(now_s, out);
         self.beat(now_s, out);
         let Some(tracked) = &mut self.tracked else {
             return;
         };
         let before = tracked.level();
-        let verdict = tracked.set_up(now_s, self.watch_sender.asks(), self.estimator, out);
+        let verdict = tracked.set_up(now_s, self.watch_sender.may_request(), self.estimator, out);
         let to = tracked.address();
         if let Some(watch) = tracked.watch.as_mut().filter(|watch| watch.is_flying)
             && let Some(update) = watch.latest
@@ -226,7 +232,7 @@ impl<'e> Session<'e> {
                 .is_some_and(|level| level != before.unwrap_or(Level::Good))
         {
             let finding = watch.assessor.open_finding();
-            tell_level(
+            report_level(
                 now_s,
                 to,
                 &mut self.watch_sender,
@@ -277,8 +283,8 @@ impl<'e> Session<'e> {
         packet: &Packet<'_>,
         out: &mut SessionOutput,
     ) -> bool {
-        let is_open =
-            (self.tracked.as_ref()).is_none_or(|tracked| !tracked.is_proved || tracked.is_silent());
+        let is_open = (self.tracked.as_ref())
+            .is_none_or(|tracked| !tracked.is_confirmed || tracked.is_silent());
         if is_open {
             self.candidates.take_message(source, packet);
         }
@@ -299,13 +305,13 @@ impl<'e> Session<'e> {
         if !is_open {
             return false;
         }
-        let proof = self.candidates.beat(now_s, source, system, &vehicle);
-        if proof == Proof::None {
+        let evidence = self.candidates.beat(now_s, source, system, &vehicle);
+        if evidence == Evidence::None {
             return false;
         }
         if let Some(tracked) = &mut self.tracked {
             let is_same = followed == Some(system) && *tracked.telemetry.vehicle() == vehicle;
-            if tracked.is_proved && is_same {
+            if tracked.is_confirmed && is_same {
                 out.events.push(Event::SenderChanged {
                     system,
                     from: std::mem::replace(&mut tracked.source, source),
@@ -314,12 +320,13 @@ impl<'e> Session<'e> {
                 self.candidates.clear();
                 return true;
             }
-            let asked_in_vain = self.watch_sender.asks() && now_s - tracked.found_s >= PROOF_S;
-            let gives_way = match tracked.is_proved {
+            let is_unanswered =
+                self.watch_sender.may_request() && now_s - tracked.found_s >= CONFIRMATION_WAIT_S;
+            let is_replaced = match tracked.is_confirmed {
                 true => now_s - tracked.received_s >= GONE_S,
-                false => tracked.is_silent() || proof == Proof::Commands || asked_in_vain,
+                false => tracked.is_silent() || evidence == Evidence::Commands || is_unanswered,
             };
-            if !gives_way {
+            if !is_replaced {
                 return false;
             }
             let verdict = tracked.end_flight(End::Lost(ContactLoss::Link), out);
@@ -346,9 +353,9 @@ impl<'e> Session<'e> {
         is_new
     }
 
-    fn ask(&mut self, now_s: f64, out: &mut SessionOutput) {
+    fn send_requests(&mut self, now_s: f64, out: &mut SessionOutput) {
         if let Some(tracked) = &mut self.tracked
-            && self.watch_sender.asks()
+            && self.watch_sender.may_request()
             && !tracked.is_silent()
         {
             let mut messages = Vec::new();
@@ -358,7 +365,7 @@ impl<'e> Session<'e> {
                 .due(now_s, &tracked.telemetry, lost_share, &mut messages);
             let to = tracked.address();
             for message in &messages {
-                self.watch_sender.ask(to, message, out);
+                self.watch_sender.request(to, message, out);
             }
             if let Some(rate_hz) = tracked.slowed_hz(now_s) {
                 let by = tracked.telemetry.rate_asker();
@@ -369,7 +376,7 @@ impl<'e> Session<'e> {
                     component: by.map(|(_, component)| component),
                 });
                 if tracked.telemetry.is_in_air() {
-                    let text = voice::status(Level::Warn, &voice::slowed(rate_hz, by));
+                    let text = messages::status(Level::Warn, &messages::slowed_text(rate_hz, by));
                     self.watch_sender.warn(now_s, to, &text, out);
                 }
             }
@@ -382,12 +389,12 @@ impl<'e> Session<'e> {
             .is_none_or(|sent_s| now_s - sent_s >= HEARTBEAT_S);
         if due {
             self.heartbeat_s = Some(now_s);
-            let to = self
-                .tracked
-                .as_ref()
-                .map_or((Version::V2, voice::NOBODY), TrackedVehicle::address);
+            let to = self.tracked.as_ref().map_or(
+                (Version::V2, messages::DEFAULT_SYSTEM),
+                TrackedVehicle::address,
+            );
             self.watch_sender
-                .say(now_s, to, &voice::heartbeat(now_s), out);
+                .send(now_s, to, &messages::heartbeat(now_s), out);
         }
     }
 
@@ -450,7 +457,7 @@ impl<'e> Session<'e> {
             } else {
                 raised
             };
-            tell_level(
+            report_level(
                 now_s,
                 to,
                 &mut self.watch_sender,
@@ -469,11 +476,11 @@ impl<'e> Session<'e> {
         {
             watch.risk_sent_s = Some(now_s);
             for (name, value) in [
-                (voice::RISK, estimate.risk_pct),
-                (voice::ELEVATED, elevated_pct),
+                (messages::RISK, estimate.risk_pct),
+                (messages::ELEVATED, elevated_pct),
             ] {
                 self.watch_sender
-                    .say(now_s, to, &voice::value(t_s, name, value), out);
+                    .send(now_s, to, &messages::value(t_s, name, value), out);
             }
         }
     }
@@ -485,7 +492,7 @@ impl<'e> Session<'e> {
 }
 
 /// Reports a change of level, and sends its text.
-fn tell_level(
+fn report_level(
     now_s: f64,
     to: (Version, u8),
     watch_sender: &mut WatchSender,
@@ -500,11 +507,14 @@ fn tell_level(
     let (severity, text) = match update.level {
         Some(level) => (
             level,
-            voice::say(level, update, finding.as_ref().zip(words.as_ref())),
+            messages::level_text(level, update, finding.as_ref().zip(words.as_ref())),
         ),
-        None => (Level::Warn, voice::unknown(before.unwrap_or(Level::Warn))),
+        None => (
+            Level::Warn,
+            messages::unknown_text(before.unwrap_or(Level::Warn)),
+        ),
     };
-    watch_sender.warn(now_s, to, &voice::status(severity, &text), out);
+    watch_sender.warn(now_s, to, &messages::status(severity, &text), out);
     let (code, advice) = words.map(|words| (words.code, words.advice)).unzip();
     out.events.push(Event::Level {
         t_s: update.t_s,

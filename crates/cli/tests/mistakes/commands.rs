@@ -44,7 +44,7 @@ fn each_mistake_has_its_advice() {
 }
 
 #[test]
-fn no_tip_writes_to_a_file_that_exists() {
+fn no_suggested_command_overwrites_a_file() {
     let folder = files();
     let commands = [
         "inspect", "check", "validate", "assess", "convert", "eval", "map", "plot", "explain",
@@ -85,7 +85,7 @@ fn no_tip_writes_to_a_file_that_exists() {
 }
 
 #[test]
-fn options_mean_the_same_everywhere() {
+fn options_have_the_same_meaning_in_all_commands() {
     let folder = folder(&[
         ("fan.yaml", FAN),
         ("rows.csv", "temperature,humidity\n20,50\n"),

@@ -243,7 +243,7 @@ fn each_mistake_has_its_advice() {
 }
 
 #[test]
-fn a_log_is_not_watched() {
+fn watch_refuses_a_log() {
     let folder = files();
     let log = folder.path().join("flight.csv").display().to_string();
     let (code, _, errors) = flagred(folder.path(), &["watch", &log]);

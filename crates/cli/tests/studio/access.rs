@@ -20,7 +20,7 @@ fn the_page_has_its_own_content_security_policy() {
     let folder = folder(&[]);
     let studio = Studio::start(folder.path(), &[]);
     assert_eq!(studio.said.len(), 2, "{:?}", studio.said);
-    let answer = studio.ask("GET", "", &[], "");
+    let answer = studio.request("GET", "", &[], "");
     assert_eq!((answer.status, answer.body.as_str()), (200, &*page()));
     let policy = format!("{POLICY}; frame-ancestors 'none'");
     for (name, value) in [
@@ -34,7 +34,7 @@ fn the_page_has_its_own_content_security_policy() {
     ] {
         assert_eq!(answer.header(name), value, "{name}");
     }
-    let head = studio.ask("HEAD", "", &[], "");
+    let head = studio.request("HEAD", "", &[], "");
     assert_eq!((head.status, head.body.as_str()), (200, ""));
     assert_eq!(head.header("content-length"), page().len().to_string());
     // There is no file to edit.
@@ -88,7 +88,7 @@ fn requests_of_others_are_refused() {
     }
     let tag = studio.file().header("etag").to_owned();
     let headers = [("If-Match", &*tag), ("Origin", "http://evil.example")];
-    assert_eq!(studio.ask("PUT", "api/file", &headers, "x").status, 403);
+    assert_eq!(studio.request("PUT", "api/file", &headers, "x").status, 403);
     let wrong = "0".repeat(token.len());
     for path in [
         "/",
@@ -113,7 +113,7 @@ fn requests_of_others_are_refused() {
     for method in ["POST", "DELETE", "PATCH", "OPTIONS", "TRACE"] {
         for path in ["", "api/file"] {
             assert_eq!(
-                studio.ask(method, path, &[], "").status,
+                studio.request(method, path, &[], "").status,
                 405,
                 "{method} {path}"
             );

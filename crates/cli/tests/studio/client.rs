@@ -76,7 +76,7 @@ impl Studio {
     }
 
     /// Requests a path below the token.
-    pub(crate) fn ask(
+    pub(crate) fn request(
         &self,
         method: &str,
         path: &str,
@@ -97,11 +97,11 @@ impl Studio {
     }
 
     pub(crate) fn file(&self) -> Answer {
-        self.ask("GET", "api/file", &[], "")
+        self.request("GET", "api/file", &[], "")
     }
 
     pub(crate) fn save(&self, tag: &str, text: &str) -> Answer {
-        self.ask("PUT", "api/file", &[("If-Match", tag)], text)
+        self.request("PUT", "api/file", &[("If-Match", tag)], text)
     }
 
     pub(crate) fn interrupt(mut self) -> Option<i32> {

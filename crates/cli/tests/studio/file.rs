@@ -25,14 +25,14 @@ fn the_file_is_written_only_if_nobody_else_changed_it() {
     assert_eq!(first.header("x-file-name"), "my%20r%C3%A4der%2Eyaml");
     assert_eq!(first.header("x-read-only"), "false");
     let tag = first.header("etag");
-    let unchanged = studio.ask("GET", "api/file", &[("If-None-Match", tag)], "");
+    let unchanged = studio.request("GET", "api/file", &[("If-None-Match", tag)], "");
     assert_eq!((unchanged.status, unchanged.body.as_str()), (304, ""));
 
     let text = format!("{RULES}# grün\n");
     let saved = studio.save(tag, &text);
     assert_eq!(saved.status, 204, "{}", saved.body);
     assert_eq!(fs::read_to_string(&path).unwrap(), text);
-    let changed = studio.ask("GET", "api/file", &[("If-None-Match", tag)], "");
+    let changed = studio.request("GET", "api/file", &[("If-None-Match", tag)], "");
     assert_eq!(
         (changed.status, changed.body.as_str()),
         (200, text.as_str())
@@ -41,7 +41,7 @@ fn the_file_is_written_only_if_nobody_else_changed_it() {
     // Saving with the previous tag, with a wrong tag and without a tag is refused.
     assert_eq!(studio.save(tag, "lost").status, 412);
     assert_eq!(studio.save("*", "lost").status, 412);
-    assert_eq!(studio.ask("PUT", "api/file", &[], "lost").status, 428);
+    assert_eq!(studio.request("PUT", "api/file", &[], "lost").status, 428);
 
     fs::write(&path, "another editor").unwrap();
     let refused = studio.save(saved.header("etag"), "lost");

@@ -11,7 +11,7 @@ use crate::{
     alarms::Verdicts,
     bootstrap::Interval,
     flight::Record,
-    scores::{APART, ProfileScores, Scores},
+    scores::{ProfileScores, SEPARATE_KIND, Scores},
 };
 use profiles::{alarms, reliability, warnings};
 
@@ -88,7 +88,12 @@ pub(crate) fn head(evaluation: &Evaluation) -> Vec<String> {
             count(vehicles, "vehicle")
         )];
     };
-    let main = || evaluation.records.iter().filter(|r| r.kind != APART);
+    let main = || {
+        evaluation
+            .records
+            .iter()
+            .filter(|r| r.kind != SEPARATE_KIND)
+    };
     let named: BTreeSet<&str> = main().filter_map(|r| r.vehicle.as_deref()).collect();
     let vehicles = named.len();
     let hours = main().map(Record::air_s).sum::<f64>() / 3600.0;
@@ -108,9 +113,9 @@ pub(crate) fn head(evaluation: &Evaluation) -> Vec<String> {
             first.onset.cases + first.onset.unknown,
         ),
     ];
-    if first.by_kind.iter().any(|(kind, _)| kind == APART) {
+    if first.by_kind.iter().any(|(kind, _)| kind == SEPARATE_KIND) {
         lines.push(format!(
-            "flights of kind `{APART}` are not in these figures, only under `by kind`: their attitude errors are commanded on purpose"
+            "flights of kind `{SEPARATE_KIND}` are not in these figures, only under `by kind`: their attitude errors are commanded on purpose"
         ));
     }
     lines

@@ -117,7 +117,7 @@ pub(super) fn warnings(
             number("lead", 6),
             number("groups announced", 15),
             number("lead", 6),
-            number("answered after", 14),
+            number("late by", 14),
             number("false/h", 7),
             number("on", 6),
         ],
@@ -145,7 +145,7 @@ fn warned(kind: String, of: &Warnings) -> Vec<String> {
             of.groups
         ),
         seconds(of.group_lead_s_median),
-        format!("{} ({})", seconds(of.answer_s_median), of.answered),
+        format!("{} ({})", seconds(of.delay_s_median), of.late),
         rate.map_or("-".to_owned(), |rate| format!("{rate:.1}")),
         on.map_or("-".to_owned(), |on| format!("{:.0} %", 100.0 * on)),
     ]

@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn kinds() {
+    fn firmware_and_frame_determine_the_kind_of_vehicle() {
         let class = |class| parameters(&[("FRAME_CLASS", class)]);
         let q = parameters(&[("Q_ENABLE", 1.0)]);
         for (text, parameters, kind) in [

@@ -1,9 +1,9 @@
 //! Converts DataFlash messages, binary or text, to a `Flight`.
 
 use super::format::{Cells, Column, FMT, Format};
-use super::landing::{Landing, air_from_events, boots_in_air};
 use super::plan::{MOTORS, MessageRole, MessageType, ResolvedSource};
 use super::signals::SPECS;
+use super::state_events::{StateEvent, air_from_events, boots_in_air};
 use super::untimed::{PendingMessage, UntimedMessages};
 use crate::ardupilot::{self, Mode};
 use crate::clock::{Clock, TimestampDecision};
@@ -28,7 +28,7 @@ pub(super) struct Collector<'o> {
     outputs: Outputs,
     label: &'static str,
     series: Vec<(&'static str, Series)>,
-    events: Vec<(f64, Landing)>,
+    events: Vec<(f64, StateEvent)>,
     modes: Vec<(f64, Mode)>,
     texts: Vec<Event>,
     /// The texts of a text log before its first message.
@@ -210,19 +210,19 @@ impl<'o> Collector<'o> {
                 }
             }
             MessageRole::Event(column) => {
-                if let Some(landing) = number(*column).and_then(Landing::of) {
+                if let Some(event) = number(*column).and_then(StateEvent::of) {
                     self.report.change();
-                    self.events.push((t_s, landing));
+                    self.events.push((t_s, event));
                 }
             }
             MessageRole::Arm(column) => {
-                let landing = match number(*column) {
-                    Some(0.0) => Landing::Disarmed,
-                    Some(_) => Landing::Armed,
+                let event = match number(*column) {
+                    Some(0.0) => StateEvent::Disarmed,
+                    Some(_) => StateEvent::Armed,
                     None => return,
                 };
                 self.report.change();
-                self.events.push((t_s, landing));
+                self.events.push((t_s, event));
             }
             MessageRole::Mode { number: id, name } => {
                 let id = id.and_then(number).or_else(|| number(*name));
@@ -275,13 +275,17 @@ impl<'o> Collector<'o> {
         for (t_s, kept) in self.untimed.timed_at_end() {
             kept.give(|type_id, cells| self.take(type_id, cells, t_s));
         }
-        let said = self.texts.iter().map(|text| &text.what);
-        let texts = self.greetings.iter().chain(said).map(String::as_str);
+        let texts_of_log = self.texts.iter().map(|text| &text.what);
+        let texts = self
+            .greetings
+            .iter()
+            .chain(texts_of_log)
+            .map(String::as_str);
         flight.vehicle = ardupilot::vehicle(texts, &self.parameters);
         let vehicle = &mut flight.vehicle;
         if vehicle.motors.is_none() && vehicle.kind == VehicleKind::Multirotor {
             vehicle.motors = match self.named_motors {
-                0 => self.outputs.like_motors(),
+                0 => self.outputs.estimate_motor_count(),
                 motors => Some(motors),
             };
         }

@@ -6,9 +6,9 @@
 
 mod collect;
 mod format;
-mod landing;
 mod plan;
 mod signals;
+mod state_events;
 pub(crate) mod text;
 mod untimed;
 

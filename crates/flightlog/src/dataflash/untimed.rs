@@ -5,7 +5,7 @@ use super::format::Cells;
 /// The maximum size of the pending messages in bytes, with an allowance for each message, so that a log without any time
 /// does not fill the memory.
 const MAX_BYTES: usize = 1 << 24;
-const BYTES_A_MESSAGE: usize = 64;
+const BYTES_PER_MESSAGE: usize = 64;
 
 /// A message that is pending until its time is known.
 pub(super) enum PendingMessage {
@@ -23,7 +23,7 @@ impl PendingMessage {
     }
 
     fn bytes(&self) -> usize {
-        BYTES_A_MESSAGE
+        BYTES_PER_MESSAGE
             + match self {
                 Self::Binary(_, payload) => payload.len(),
                 Self::Text(_, cells) => cells.len(),

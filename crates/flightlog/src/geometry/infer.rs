@@ -13,22 +13,22 @@ const MIN_ROWS: usize = 100;
 /// failed motors and motors at a limit raise it.
 const FITS: f64 = 0.05;
 /// A layout does not fit if at least this share of the variance is outside its space.
-const FITS_NOT: f64 = 0.2;
+const MISFIT: f64 = 0.2;
 /// `(factor, offset)`: a share is clearly larger than another share `s` if it exceeds `factor * s + offset`.
 const CLEARLY: (f64, f64) = (5.0, 0.002);
 /// The minimum correlation of the efforts with the outputs of the rate controllers for a layout to be right. It is
 /// 0.44 to 1 for the right layout, and higher than for any other layout.
 const FOLLOWS: f64 = 0.4;
 /// How much this correlation must be higher for the right layout than for any other layout.
-const FOLLOWS_ABOVE: f64 = 0.2;
+const FOLLOWS_LEAD: f64 = 0.2;
 /// A declared layout is doubted only if its correlation of effort and attitude error is below this. Right layouts have
 /// 0.0 to 0.9; well-tuned and slow flights have low values.
-const GOES_WITHOUT: f64 = 0.1;
+const DOUBT_BELOW: f64 = 0.1;
 /// Another layout fits if its correlation of effort and attitude error exceeds this.
-const GOES_WITH: f64 = 0.4;
+const ALTERNATIVE_ABOVE: f64 = 0.4;
 /// `(minimum, lead)`: another layout also fits if its correlation exceeds `minimum`, and exceeds that of the declared
 /// layout by more than `lead`.
-const GOES_WITH_RATHER: (f64, f64) = (0.25, 0.6);
+const ALTERNATIVE_LEAD: (f64, f64) = (0.25, 0.6);
 
 /// The signals that show whether a layout is right: the outputs of the rate controllers, and the attitude.
 pub(crate) const SIGNALS: [&str; 7] = [
@@ -102,7 +102,7 @@ fn by_outputs(variance: &Variance, layouts: &[(f64, String, Vec<[f64; 3]>)]) -> 
         .max_by(|(.., a), (.., b)| correlation(a).total_cmp(&correlation(b)))?;
     let best = correlation(factors);
     let yaw = |factors: &[[f64; 3]]| factors.iter().map(|f| f[2]).collect::<Vec<f64>>();
-    let near = |factors: &[[f64; 3]]| correlation(factors) > best - FOLLOWS_ABOVE;
+    let near = |factors: &[[f64; 3]]| correlation(factors) > best - FOLLOWS_LEAD;
     let mut rivals = layouts.iter().filter(|(.., other)| near(other));
     let same_yaw = rivals.all(|(.., other)| yaw(other) == yaw(factors));
     (best > FOLLOWS && same_yaw).then(|| Geometry {
@@ -127,7 +127,7 @@ pub(super) fn contradiction(flight: &Flight, geometry: &Geometry) -> Option<Stri
     let is_other = |name: &String| Some(name) != geometry.frame.as_ref();
     let others = || layouts(flight).filter(|(_, name, _)| is_other(name));
     let share = variance.outside(&geometry.factors);
-    if share > FITS_NOT {
+    if share > MISFIT {
         let running = Variance::of_commands(flight, true);
         if running.is_some_and(|running| running.outside(&geometry.factors) <= FITS) {
             return None;
@@ -151,7 +151,7 @@ pub(super) fn contradiction(flight: &Flight, geometry: &Geometry) -> Option<Stri
     };
     if let Some(own) = variance.with_outputs(&geometry.factors) {
         let (least, name) = best(&|factors| variance.with_outputs(factors))?;
-        return (least > FOLLOWS && least > own + FOLLOWS_ABOVE).then(|| {
+        return (least > FOLLOWS && least > own + FOLLOWS_LEAD).then(|| {
             format!(
                 "its roll, pitch and yaw do not follow the outputs of the controllers (correlation {own:.2}), but those of {name} do ({least:.2})"
             )
@@ -159,9 +159,9 @@ pub(super) fn contradiction(flight: &Flight, geometry: &Geometry) -> Option<Stri
     }
     let own = variance.with_errors(&geometry.factors)?;
     let (least, name) = best(&|factors| variance.with_errors(factors))?;
-    let (from, above) = GOES_WITH_RATHER;
-    let fits = least > GOES_WITH || least > from && least > own + above;
-    (own < GOES_WITHOUT && fits).then(|| {
+    let (from, above) = ALTERNATIVE_LEAD;
+    let fits = least > ALTERNATIVE_ABOVE || least > from && least > own + above;
+    (own < DOUBT_BELOW && fits).then(|| {
         format!(
             "its roll and pitch do not correlate with the attitude error (correlation {own:.2}), but those of {name} do ({least:.2})"
         )

@@ -425,7 +425,7 @@ mod tests {
 
     /// On a ring of equal arms the axes are independent, and each is balanced.
     #[test]
-    fn rings_are_balanced_and_their_axes_independent() {
+    fn ring_layouts_are_balanced_with_independent_axes() {
         let frames = all();
         assert!(frames.len() > 40, "{}", frames.len());
         let rings = frames.into_iter().filter(|(_, factors)| {

@@ -39,7 +39,7 @@ const SLOW_AGAIN: f64 = 0.5;
 /// The time to wait for the requested rate, in seconds.
 const RATE_WAIT_S: f64 = 2.0;
 /// The time to wait after a few requests without effect, in seconds; it is longer, because the link may be slow.
-const RATE_PATIENCE_S: f64 = 15.0;
+const SLOW_LINK_WAIT_S: f64 = 15.0;
 /// The maximum packet loss that is compensated for in a measured rate.
 const MAX_LOST: f64 = 0.9;
 /// The time until a parameter is requested again, in seconds.
@@ -54,12 +54,12 @@ pub struct Requests {
     rate_tries: u32,
     /// The time at which rates were last requested or measured, and the number of messages of each kind received until
     /// then.
-    looked: Option<(f64, [u64; RATED.len()])>,
+    measured: Option<(f64, [u64; RATED.len()])>,
     /// Whether the rate of each message was too low in the latest measurement.
     slow: [bool; RATED.len()],
-    has_old_way: bool,
+    used_data_stream: bool,
     has_been_fast: bool,
-    slow_looks: u32,
+    slow_measurements: u32,
     /// Whether a rate that has just dropped is being measured, before it is requested again.
     measures: bool,
     slowed_hz: Option<f64>,
@@ -88,8 +88,8 @@ impl Requests {
 
     /// Restarts the measurement of rates, after the link was silent.
     pub fn resume(&mut self) {
-        self.looked = None;
-        self.slow_looks = 0;
+        self.measured = None;
+        self.slow_measurements = 0;
         self.measures = false;
     }
 
@@ -120,19 +120,19 @@ impl Requests {
         out: &mut Vec<MavMessage>,
     ) {
         let seen = telemetry.seen();
-        let Some((looked_s, then)) = self.looked else {
-            self.looked = Some((now_s, seen));
+        let Some((measured_s, then)) = self.measured else {
+            self.measured = Some((now_s, seen));
             return;
         };
         let wait_s = match self.rate_tries {
             _ if self.measures => RATE_WAIT_S,
             0 => LISTEN_S,
             1..4 => RATE_WAIT_S,
-            _ => RATE_PATIENCE_S,
+            _ => SLOW_LINK_WAIT_S,
         };
         let is_refused =
-            telemetry.interval_refused() && !self.has_old_way && self.slow.contains(&true);
-        let waited_s = now_s - looked_s;
+            telemetry.interval_refused() && !self.used_data_stream && self.slow.contains(&true);
+        let waited_s = now_s - measured_s;
         if waited_s < wait_s && !is_refused {
             return;
         }
@@ -151,18 +151,22 @@ impl Requests {
                     && rate_hz(i) + outside / waited_s / arrives < share * RATES_HZ[i]
             });
             self.has_been_fast |= !self.slow[0];
-            self.slow_looks = if self.slow[0] { self.slow_looks + 1 } else { 0 };
+            self.slow_measurements = if self.slow[0] {
+                self.slow_measurements + 1
+            } else {
+                0
+            };
             // The rate is reported after the second slow measurement: the first one also contains commands from before
             // the drop, and a short silence of the link has ended by the second one.
-            if self.slow_looks == 2 && self.has_been_fast {
+            if self.slow_measurements == 2 && self.has_been_fast {
                 self.slowed_hz = Some(rate_hz(0));
             }
             // If another station requested a lower rate, that rate is measured before a new request, because the
             // request would raise it.
             let is_asked = telemetry.rate_asker().is_some();
-            self.measures = self.slow_looks == 1 && self.has_been_fast && is_asked;
+            self.measures = self.slow_measurements == 1 && self.has_been_fast && is_asked;
         }
-        self.looked = Some((now_s, seen));
+        self.measured = Some((now_s, seen));
         if self.measures {
             return;
         }
@@ -172,13 +176,13 @@ impl Requests {
             return;
         }
         // The first two requests use the new command; further ones alternate between the old and the new command.
-        let old_way = telemetry.interval_refused()
+        let by_data_stream = telemetry.interval_refused()
             || self.rate_tries >= 2 && self.rate_tries.is_multiple_of(2);
-        self.has_old_way |= old_way;
+        self.used_data_stream |= by_data_stream;
         self.rate_tries += 1;
         let system = telemetry.system();
         for i in (0..RATED.len()).filter(|&i| self.slow[i]) {
-            out.push(match old_way {
+            out.push(match by_data_stream {
                 true => MavMessage::REQUEST_DATA_STREAM(REQUEST_DATA_STREAM_DATA {
                     req_message_rate: RATES_HZ[i] as u16,
                     target_system: system,

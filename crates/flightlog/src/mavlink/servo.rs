@@ -3,14 +3,14 @@
 use crate::{Motor, parameters::Parameters, px4};
 
 /// The number of outputs of a port.
-pub(crate) const OUTPUTS_A_PORT: usize = 16;
+pub(crate) const OUTPUTS_PER_PORT: usize = 16;
 
 /// The port of an output (numbered from 1), and the index of the output in that port. The ports of PX4 are its banks:
 /// 0 is MAIN, 1 is AUX.
 pub(crate) fn bank(output: u16) -> (u8, usize) {
     let index = usize::from(output.saturating_sub(1));
-    let port = u8::try_from(index / OUTPUTS_A_PORT).unwrap_or(u8::MAX);
-    (port, index % OUTPUTS_A_PORT)
+    let port = u8::try_from(index / OUTPUTS_PER_PORT).unwrap_or(u8::MAX);
+    (port, index % OUTPUTS_PER_PORT)
 }
 
 /// The name of the message field of an output.
@@ -26,7 +26,7 @@ pub(crate) fn px4_motors(parameters: &Parameters) -> Vec<(Motor, u16)> {
     let of_bank = |bank: u8| {
         let motors = px4::actuator_outputs(parameters, bank, None).into_iter();
         motors.map(move |(motor, index)| {
-            let output = (OUTPUTS_A_PORT * usize::from(bank) + index + 1) as u16;
+            let output = (OUTPUTS_PER_PORT * usize::from(bank) + index + 1) as u16;
             let named = Motor {
                 output: field(output),
                 ..motor

@@ -2,7 +2,7 @@
 //! parameters that are still needed.
 
 use super::outputs::{KnownOutputs, motors_expected};
-use super::servo::{OUTPUTS_A_PORT, bank, field, px4_motors};
+use super::servo::{OUTPUTS_PER_PORT, bank, field, px4_motors};
 use super::telemetry::Pulses;
 use crate::outputs::LONGEST_PULSE_US;
 use crate::{
@@ -87,8 +87,8 @@ impl Setup {
         for (command, &output) in commands.iter_mut().zip(&self.outputs) {
             let index = output.checked_sub(1);
             let pulse = index.and_then(|index| {
-                let port = pulses.0.get(index / OUTPUTS_A_PORT)?;
-                port.get(index % OUTPUTS_A_PORT)
+                let port = pulses.0.get(index / OUTPUTS_PER_PORT)?;
+                port.get(index % OUTPUTS_PER_PORT)
             });
             *command = match pulse {
                 Some(pulse)
@@ -105,7 +105,7 @@ impl Setup {
     /// The port of SERVO_OUTPUT_RAW that completes the commands of all motors.
     pub(super) fn last_port(&self) -> usize {
         let last = self.outputs.iter().max().copied().unwrap_or(1);
-        last.saturating_sub(1) / OUTPUTS_A_PORT
+        last.saturating_sub(1) / OUTPUTS_PER_PORT
     }
 }
 
@@ -174,7 +174,7 @@ fn wanted_of_px4(parameters: &Parameters, vehicle: &Vehicle) -> Vec<String> {
     let all = expected.map_or(usize::MAX, usize::from);
     let ends = ["MIN", "MAX"];
     let Some((_, output)) = motors.first().filter(|_| motors.len() >= all) else {
-        let main = (1..=OUTPUTS_A_PORT).map(|output| format!("PWM_MAIN_FUNC{output}"));
+        let main = (1..=OUTPUTS_PER_PORT).map(|output| format!("PWM_MAIN_FUNC{output}"));
         let aux = (1..=AUX_OUTPUTS).map(|output| format!("PWM_AUX_FUNC{output}"));
         // Versions before 1.13 have other parameters, for one bank or for all banks.
         let old = ends.map(|end| format!("PWM_MAIN_{end}"));

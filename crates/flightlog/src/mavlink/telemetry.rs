@@ -3,7 +3,7 @@
 use super::{
     Packet, Setup, Version,
     decoder::{AUTOPILOT, Decoder, DecoderChange, Payload, ServoOutputs, filled, number},
-    servo::OUTPUTS_A_PORT,
+    servo::OUTPUTS_PER_PORT,
     setup::missing,
     signals::{MessageSpec, SPECS, spec_of},
 };
@@ -51,11 +51,11 @@ const ALWAYS: usize = 3;
 const PORTS: usize = 2;
 /// The pulse widths of all outputs at a time, in us.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Pulses(pub(super) [[u16; OUTPUTS_A_PORT]; PORTS]);
+pub struct Pulses(pub(super) [[u16; OUTPUTS_PER_PORT]; PORTS]);
 
 /// The latest pulses of each port, and whether they arrived since the last commands were reported.
-type Outputs = [([u16; OUTPUTS_A_PORT], bool); PORTS];
-const NO_OUTPUTS: Outputs = [([u16::MAX; OUTPUTS_A_PORT], false); PORTS];
+type Outputs = [([u16; OUTPUTS_PER_PORT], bool); PORTS];
+const NO_OUTPUTS: Outputs = [([u16::MAX; OUTPUTS_PER_PORT], false); PORTS];
 
 /// While the motors idle, a landed state older than this, in seconds, is not used.
 const LANDED_FRESH_S: f64 = 1.5;
@@ -163,7 +163,7 @@ struct LatestSignal {
     /// The index in [`SPECS`] of the message that contained the value; a message with a larger index does not replace
     /// the value.
     spec: usize,
-    /// The value; NaN is unknown.
+    /// The value; NaN if unknown.
     value: f64,
 }
 
@@ -435,7 +435,7 @@ impl Telemetry {
         for (pulses, is_new) in &mut self.outputs {
             // Pulses that did not arrive again since the previous row are unknown.
             if !std::mem::take(is_new) {
-                *pulses = [u16::MAX; OUTPUTS_A_PORT];
+                *pulses = [u16::MAX; OUTPUTS_PER_PORT];
             }
         }
         TelemetryChange::Commands { t_s }

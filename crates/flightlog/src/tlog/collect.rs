@@ -6,7 +6,7 @@ use crate::clock::Latest;
 use crate::geometry;
 use crate::mavlink::decoder::{AUTOPILOT, Decoder, DecoderChange, Payload, ServoOutputs, filled};
 use crate::mavlink::packet::Packet;
-use crate::mavlink::servo::OUTPUTS_A_PORT;
+use crate::mavlink::servo::OUTPUTS_PER_PORT;
 use crate::mavlink::signals::{MessageSpec, SPECS, spec_of};
 use crate::outputs::Outputs;
 use crate::signal::{Label, preferred};
@@ -62,7 +62,7 @@ impl<'o> Collector<'o> {
         }
         let zero_us = *self.zero_us.get_or_insert(stamp_us);
         let t_s = (stamp_us as f64 - zero_us as f64) * 1e-6;
-        if !self.latest.believe(t_s) {
+        if !self.latest.accept(t_s) {
             return self.report.bad("a timestamp that contradicts the others");
         }
         let known = (self.systems.iter()).position(|(system, _)| *system == packet.system);
@@ -166,7 +166,7 @@ impl SystemState {
         }
         self.has_port_0 |= port == 0;
         let first = port == 0 || !self.has_port_0;
-        let before = u16::from(port) * OUTPUTS_A_PORT as u16;
+        let before = u16::from(port) * OUTPUTS_PER_PORT as u16;
         // Outputs that are not driven are 0. In MAVLink 1, so are outputs above 8.
         let pulses = (1..).zip(outputs.pulses_us).filter(|&(_, us)| us > 0);
         let pulses = pulses.map(|(output, us)| (before + output, f64::from(us)));

@@ -51,7 +51,7 @@ fn scan(collector: &mut Collector<'_>, window: &[u8], at_end: bool) -> usize {
     let mut at = 0;
     while at < sure {
         let rest = &window[at..];
-        match believed(rest) {
+        match accepted_record(rest) {
             Some((stamp_us, packet)) => {
                 collector.report.messages += 1;
                 collector.packet(stamp_us, &packet);
@@ -92,16 +92,16 @@ fn record(bytes: &[u8]) -> Option<(u64, Packet<'_>)> {
 
 /// The record at the start of `bytes`, if its checksum is right. The checksum of a packet of another dialect cannot be
 /// verified; it is accepted if its timestamp is plausible and a packet follows.
-fn believed(bytes: &[u8]) -> Option<(u64, Packet<'_>)> {
+fn accepted_record(bytes: &[u8]) -> Option<(u64, Packet<'_>)> {
     let (stamp_us, packet) = record(bytes)?;
-    let believed = packet.sound.unwrap_or_else(|| {
+    let is_accepted = packet.sound.unwrap_or_else(|| {
         let rest = &bytes[STAMP + packet.bytes.len()..];
         let next = rest
             .get(STAMP)
             .is_none_or(|magic| matches!(magic, 0xfd | 0xfe));
         STAMPS_US.contains(&stamp_us) && next
     });
-    believed.then_some((stamp_us, packet))
+    is_accepted.then_some((stamp_us, packet))
 }
 
 /// The offset of the next record that is certainly not damaged.

@@ -77,7 +77,7 @@ impl<'o> Collector<'o> {
 
     /// Notes the time at which the log began.
     pub(super) fn started(&mut self, start_us: u64) {
-        self.latest.believe(start_us as f64 * 1e-6);
+        self.latest.accept(start_us as f64 * 1e-6);
     }
 
     /// Processes a message without its head.
@@ -219,7 +219,7 @@ impl<'o> Collector<'o> {
         let Some(t_s) = time.number(body).map(|time_us| time_us * 1e-6) else {
             return self.report.bad("a message without a time");
         };
-        if !self.latest.believe(t_s) {
+        if !self.latest.accept(t_s) {
             return self.report.bad("a timestamp that contradicts the others");
         }
         let flag = |field: &NumericField, yes: f64| Some(field.number(body)? == yes);

@@ -232,7 +232,7 @@ impl<'r, 't> Reader<'r, 't> {
         let found = (0..self.accumulations.len()).map(|output| self.aggregation(output));
         let found: Vec<Option<Aggregation>> = found.collect();
         blocks::aggregate(&mut self.draft.model, &found);
-        blocks::settle(&mut self.draft.model, std::mem::take(&mut self.blocks));
+        blocks::set_blocks(&mut self.draft.model, std::mem::take(&mut self.blocks));
         if self.is_fuzzylite {
             output_conditions::replace(&mut self.draft);
         }

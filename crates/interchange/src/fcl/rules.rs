@@ -43,7 +43,10 @@ impl Reader<'_, '_> {
         self.next += usize::from(name.is_some());
         let part = self.here();
         let count = self.blocks.len();
-        if !self.draft.has_room(count, MAX_BLOCKS, "rule blocks", part) {
+        if !self
+            .draft
+            .allows_another(count, MAX_BLOCKS, "rule blocks", part)
+        {
             return self.skip("RULEBLOCK");
         }
         let mut block = Block::new(name.unwrap_or_default());

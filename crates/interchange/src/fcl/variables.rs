@@ -8,7 +8,7 @@ use fuzzy::{
 
 use super::{extent::extent, read::Reader, term};
 use crate::{
-    fll::{self, habits},
+    fll::{self, conventions},
     model_draft::MAX_VARIABLES,
     words,
 };
@@ -24,11 +24,11 @@ impl<'t> Reader<'_, 't> {
             if outputs {
                 if self
                     .draft
-                    .has_room(self.outputs.len(), MAX_VARIABLES, "outputs", name)
+                    .allows_another(self.outputs.len(), MAX_VARIABLES, "outputs", name)
                 {
                     self.outputs.push(name);
                 }
-            } else if self.draft.has_room(
+            } else if self.draft.allows_another(
                 self.draft.model.inputs.len(),
                 MAX_VARIABLES,
                 "inputs",
@@ -102,7 +102,10 @@ impl<'t> Reader<'_, 't> {
                 .any(|m| m.eq_ignore_ascii_case(word))
         });
         let count = self.draft.model.outputs.len();
-        if !self.draft.has_room(count, MAX_VARIABLES, "outputs", name) {
+        if !self
+            .draft
+            .allows_another(count, MAX_VARIABLES, "outputs", name)
+        {
             return self.skip("DEFUZZIFY");
         }
         let mut output = Output::new(Variable::new(name, f64::NAN, f64::NAN));
@@ -140,7 +143,7 @@ impl<'t> Reader<'_, 't> {
             }
         }
         if self.is_fuzzylite {
-            habits::tsukamoto(&mut output);
+            conventions::tsukamoto(&mut output);
         }
         self.universe(&mut output.variable, &mut spans, name);
         self.accumulations.push(accumulation);
@@ -192,9 +195,9 @@ impl<'t> Reader<'_, 't> {
             };
             match read {
                 Some(read) if self.is_fuzzylite => {
-                    habits::add(&mut self.draft, (variable, spans), read, name);
+                    conventions::add(&mut self.draft, (variable, spans), read, name);
                 }
-                Some((term, span)) if self.draft.has_room_for_term(variable, name) => {
+                Some((term, span)) if self.draft.allows_another_term(variable, name) => {
                     variable.terms.push(term);
                     spans.terms.push(span);
                 }

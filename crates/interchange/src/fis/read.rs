@@ -86,7 +86,7 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
     let names: Vec<&str> = inputs.iter().map(|input| name(input)).collect();
     for section in &inputs {
         let count = draft.model.inputs.len();
-        if !draft.has_room(count, MAX_VARIABLES, "inputs", section.name) {
+        if !draft.allows_another(count, MAX_VARIABLES, "inputs", section.name) {
             break;
         }
         let form = ParameterForm::Plain;
@@ -98,7 +98,7 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
     let defuzzifier = defuzzifier(&mut draft, system, weighted);
     for section in Section::numbered(&sections, "Output") {
         let count = draft.model.outputs.len();
-        if !draft.has_room(count, MAX_VARIABLES, "outputs", section.name) {
+        if !draft.allows_another(count, MAX_VARIABLES, "outputs", section.name) {
             break;
         }
         let form = match is_type2 {
@@ -333,7 +333,7 @@ fn variable(
     let terms: Vec<&Entry<'_>> = section.entries.iter().filter(is_term).collect();
     count(draft, section, "NumMFs", terms.len());
     for entry in terms {
-        if !draft.has_room_for_term(&variable, entry.value) {
+        if !draft.allows_another_term(&variable, entry.value) {
             break;
         }
         let read = match type2::bound(entry.key) {

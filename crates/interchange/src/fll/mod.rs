@@ -4,7 +4,7 @@ pub(crate) use read::read;
 pub(crate) use write::write;
 
 mod activation;
-pub(crate) mod habits;
+pub(crate) mod conventions;
 pub(crate) mod output_conditions;
 mod read;
 pub(crate) mod term;

@@ -6,7 +6,7 @@ use fuzzy::{
     model::{Aggregation, Block, NoRuleFires, Output, Rule, Sampling, SamplingRule, Variable},
 };
 
-use super::{activation, habits, output_conditions, term};
+use super::{activation, conventions, output_conditions, term};
 use crate::{
     Format, Losses, blocks,
     model_draft::{MAX_BLOCKS, MAX_VARIABLES, ModelDraft},
@@ -104,7 +104,7 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
     let inputs: Vec<&str> = of(SectionKind::Input).map(|input| input.name).collect();
     for section in of(SectionKind::Input) {
         let count = draft.model.inputs.len();
-        if !draft.has_room(count, MAX_VARIABLES, "inputs", section.name) {
+        if !draft.allows_another(count, MAX_VARIABLES, "inputs", section.name) {
             break;
         }
         // Values outside the range always count as the nearest value inside, whatever `lock-range` is. The line is
@@ -117,7 +117,7 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
     }
     for section in of(SectionKind::Output) {
         let count = draft.model.outputs.len();
-        if !draft.has_room(count, MAX_VARIABLES, "outputs", section.name) {
+        if !draft.allows_another(count, MAX_VARIABLES, "outputs", section.name) {
             return draft.finish();
         }
         output(&mut draft, section, &inputs);
@@ -251,7 +251,7 @@ fn variable(
     variable.description = description(section);
     for written in section.all("term") {
         if let Some((term, span)) = term::read(draft, written, inputs, own) {
-            habits::add(draft, (&mut variable, &mut spans), (term, span), written);
+            conventions::add(draft, (&mut variable, &mut spans), (term, span), written);
         }
     }
     Some((variable, spans))
@@ -298,7 +298,7 @@ fn defuzzifier(draft: &mut ModelDraft<'_>, written: &str, output: &mut Output) {
     output.defuzzifier = known;
     let weighted = words::is_weighted(known);
     if weighted {
-        habits::tsukamoto(output);
+        conventions::tsukamoto(output);
         return;
     }
     let Some(part) = parts.next() else {
@@ -337,7 +337,7 @@ fn operator<T: Copy>(
 fn blocks(draft: &mut ModelDraft<'_>, sections: &[&Section<'_>]) {
     let mut blocks = vec![];
     for (index, section) in sections.iter().enumerate() {
-        if !draft.has_room(index, MAX_BLOCKS, "rule blocks", section.name) {
+        if !draft.allows_another(index, MAX_BLOCKS, "rule blocks", section.name) {
             break;
         }
         let mut block = Block::new(section.name);
@@ -405,7 +405,7 @@ fn blocks(draft: &mut ModelDraft<'_>, sections: &[&Section<'_>]) {
         }
         blocks.push(block);
     }
-    blocks::settle(&mut draft.model, blocks);
+    blocks::set_blocks(&mut draft.model, blocks);
 }
 
 /// The aggregation of each output.

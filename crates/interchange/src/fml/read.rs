@@ -72,7 +72,7 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
         reader.rule_base(base);
     }
     blocks::aggregate(&mut reader.draft.model, &reader.aggregations);
-    blocks::settle(&mut reader.draft.model, reader.blocks);
+    blocks::set_blocks(&mut reader.draft.model, reader.blocks);
     reader.draft.finish()
 }
 
@@ -277,7 +277,7 @@ impl Reader<'_> {
         let part = tag(self.draft.text, node);
         if !self
             .draft
-            .has_room(count, 2 * MAX_VARIABLES, "inputs and outputs", part)
+            .allows_another(count, 2 * MAX_VARIABLES, "inputs and outputs", part)
         {
             return None;
         }
@@ -340,7 +340,10 @@ impl Reader<'_> {
     fn tsk(&mut self, node: Node<'_, '_>) {
         let part = tag(self.draft.text, node);
         let count = self.draft.model.outputs.len();
-        if !self.draft.has_room(count, MAX_VARIABLES, "outputs", part) {
+        if !self
+            .draft
+            .allows_another(count, MAX_VARIABLES, "outputs", part)
+        {
             return;
         }
         let name = attribute(node, "name").unwrap_or_default();
@@ -406,7 +409,10 @@ impl Reader<'_> {
         }
         let part = tag(self.draft.text, base);
         let count = self.blocks.len();
-        if !self.draft.has_room(count, MAX_BLOCKS, "rule blocks", part) {
+        if !self
+            .draft
+            .allows_another(count, MAX_BLOCKS, "rule blocks", part)
+        {
             return;
         }
         let block = self.operators(

@@ -87,7 +87,7 @@ pub(super) struct Fit<'a> {
 
 impl Fit<'_> {
     /// The number of coefficients of a rule: one for each input, and a constant.
-    fn numbers_a_rule(&self) -> usize {
+    fn coefficients_per_rule(&self) -> usize {
         match self.consequents {
             Consequents::Constants => 1,
             Consequents::Lines => self.structure.inputs().len() + 1,
@@ -97,9 +97,9 @@ impl Fit<'_> {
     /// The sums over the rows of each fold.
     fn sums(&self, data: &Data, parts: usize, part: impl Fn(usize) -> usize) -> Vec<Sums> {
         let scales = self.scales(data);
-        let a_rule = self.numbers_a_rule();
+        let per_rule = self.coefficients_per_rule();
         let mean = mean(data);
-        let mut sums = vec![Sums::new(self.structure.rules() * a_rule); parts];
+        let mut sums = vec![Sums::new(self.structure.rules() * per_rule); parts];
         let (mut strengths, mut factors) = (Vec::new(), Vec::new());
         for row in 0..data.len() {
             let x = |input: usize| data.inputs[input][row];
@@ -112,12 +112,12 @@ impl Fit<'_> {
             factors.clear();
             for (rule, strength) in &strengths {
                 let share = strength / total;
-                let first = rule * a_rule;
+                let first = rule * per_rule;
                 if self.consequents == Consequents::Lines {
                     let of_inputs = scales.iter().enumerate();
                     factors.extend(of_inputs.map(|(i, scale)| (first + i, share * scale.of(&x))));
                 }
-                factors.push((first + a_rule - 1, share));
+                factors.push((first + per_rule - 1, share));
             }
             sums[part(row)].add(&factors, data.truths[row] - mean, data.weight(row));
         }
@@ -126,16 +126,16 @@ impl Fit<'_> {
 
     /// The numbers of each rule: the coefficients, then the constant.
     pub(super) fn numbers(&self, data: &Data) -> Vec<Vec<f64>> {
-        let a_rule = self.numbers_a_rule();
+        let per_rule = self.coefficients_per_rule();
         let mean = mean(data);
         let sums = self.sums(data, 1, |_| 0).remove(0);
         let found = solve(sums.squares, &sums.products, self.ridge);
-        let found = found.unwrap_or_else(|| DVector::zeros(self.structure.rules() * a_rule));
+        let found = found.unwrap_or_else(|| DVector::zeros(self.structure.rules() * per_rule));
         let scales = self.scales(data);
-        let rules = found.as_slice().chunks_exact(a_rule);
+        let rules = found.as_slice().chunks_exact(per_rule);
         rules
             .map(|numbers| {
-                let (scaled, constant) = numbers.split_at(a_rule - 1);
+                let (scaled, constant) = numbers.split_at(per_rule - 1);
                 let slopes = scaled.iter().zip(&scales);
                 let mut numbers: Vec<f64> =
                     slopes.map(|(slope, scale)| slope / scale.half).collect();
@@ -161,9 +161,9 @@ impl Fit<'_> {
     }
 
     /// The cross-validation error: root mean square, with each fold predicted from the others.
-    pub(super) fn left_out(&self, data: &Data, folds: &Folds) -> f64 {
+    pub(super) fn cross_validation_error(&self, data: &Data, folds: &Folds) -> f64 {
         let sums = self.sums(data, folds.count, |row| folds.of(data, row));
-        let mut all = Sums::new(self.structure.rules() * self.numbers_a_rule());
+        let mut all = Sums::new(self.structure.rules() * self.coefficients_per_rule());
         for part in &sums {
             all.squares += &part.squares;
             all.products += &part.products;

@@ -109,7 +109,7 @@ pub struct IdentifyStep {
     /// The number of terms of that input; for clusters, the number of clusters.
     pub terms: usize,
     /// The cross-validation error (root mean square), in the unit of the output.
-    pub left_out: f64,
+    pub cv_error: f64,
 }
 
 /// A step must also reduce the error by this share of the error of predicting the mean: smaller reductions are
@@ -207,7 +207,7 @@ pub fn identify(
         .map(|(input, terms, left_out)| IdentifyStep {
             input: names[input].clone(),
             terms,
-            left_out,
+            cv_error: left_out,
         });
     if structure.inputs().is_empty() {
         return Err(TuneError::NoInputHelps);
@@ -268,7 +268,7 @@ impl Search<'_> {
             kept: &vec![true; structure.rules()],
             ridge: RIDGE,
         };
-        fit.left_out(self.data, &self.folds)
+        fit.cross_validation_error(self.data, &self.folds)
     }
 
     /// The candidates for a step: the changed input, its number of terms, and the structure.

@@ -34,7 +34,7 @@ fn inputs_that_matter_are_found_and_predict() {
     let mut columns = found.columns.clone();
     columns.sort_unstable();
     assert_eq!(columns, [0, 1]);
-    let errors: Vec<f64> = found.steps.iter().map(|step| step.left_out).collect();
+    let errors: Vec<f64> = found.steps.iter().map(|step| step.cv_error).collect();
     assert!(errors.is_sorted_by(|a, b| a > b), "{errors:?}");
     let engine = Engine::new(&found.model).unwrap();
     let columns: Vec<&[f64]> = found.columns.iter().map(|c| &data.inputs[*c][..]).collect();

@@ -23,7 +23,7 @@ use super::{
 pub struct IdentifyValidation {
     /// The number of folds.
     pub folds: usize,
-    /// The error of predicting the mean of the other rows.
+    /// The error of a baseline that predicts each row as the mean of the rows in other folds.
     pub mean: Interval,
     /// The error of a linear regression on all inputs.
     pub linear: Interval,

@@ -20,7 +20,7 @@ use change::{Change, DerivedRule, RuleSlots, changes, rule_size};
 use reference::ReferenceOutputs;
 
 /// Values that differ by at most this share of the output's range are equal.
-pub const EQUAL: f64 = 1e-12;
+pub const EQUAL_TOLERANCE: f64 = 1e-12;
 
 /// The maximum number of rules of a rule set to simplify: the time grows faster than the square of their number.
 pub const MAX_RULES: usize = 1_000;
@@ -29,7 +29,7 @@ pub const MAX_RULES: usize = 1_000;
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct SimplifySettings {
-    /// The largest allowed difference of an output, in its unit; `None` is [`EQUAL`].
+    /// The largest allowed difference of an output, in its unit; `None` is [`EQUAL_TOLERANCE`].
     pub tolerance: Option<f64>,
     /// Whether to compare at the rows only. Elsewhere the outputs may then differ arbitrarily.
     pub rows_only: bool,
@@ -298,7 +298,7 @@ fn within_tolerance(model: &Model, reference: &mut ReferenceOutputs, slots: &mut
                 continue;
             }
             let candidate = applied(&change, slots);
-            match reference.glance(&with_rules(model, &candidate)) {
+            match reference.sampled_difference(&with_rules(model, &candidate)) {
                 Some(share) => promising.push((share / change.saved as f64, key, candidate)),
                 None => drop(failed.insert(key)),
             }

@@ -39,7 +39,7 @@ impl ReferenceOutputs {
         tolerance: Option<f64>,
     ) -> Result<ReferenceOutputs, SimplifyError> {
         let outputs = || model.outputs.iter().map(|output| &output.variable);
-        let equal = |output: &Variable| super::EQUAL * (output.high - output.low);
+        let equal = |output: &Variable| super::EQUAL_TOLERANCE * (output.high - output.low);
         let equal: Vec<f64> = outputs().map(equal).collect();
         let slices: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
         Ok(ReferenceOutputs {
@@ -73,7 +73,7 @@ impl ReferenceOutputs {
 
     /// The largest difference at the first [`CHUNK`] points and at those where earlier candidates failed, as a share of
     /// the tolerance; `None` if it exceeds the tolerance.
-    pub(crate) fn glance(&mut self, model: &Model) -> Option<f64> {
+    pub(crate) fn sampled_difference(&mut self, model: &Model) -> Option<f64> {
         let tolerances = self.tolerances.clone();
         let difference = self.compare(model, &tolerances, CHUNK)?;
         Some(difference.map_or(0.0, |(share, _)| share))

@@ -218,7 +218,7 @@ rules:
 }
 
 #[test]
-fn points_from_rows_alone_allow_more() {
+fn comparing_only_at_rows_allows_more_changes() {
     let model = table(SUMS, "slow slow slow even even even fast fast fast");
     let settings = SimplifySettings {
         rows_only: true,
@@ -238,7 +238,7 @@ fn points_from_rows_alone_allow_more() {
 }
 
 #[test]
-fn a_list_with_only_the_first_firing_rule_keeps_its_meaning() {
+fn first_match_rule_lists_keep_their_meaning() {
     let model = parse(
         "
 fuzzy: 1

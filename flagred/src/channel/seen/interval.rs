@@ -21,7 +21,7 @@ pub(crate) fn interval(
     if channels.get(channel)?.exponential {
         return None;
     }
-    let latest = statistic.is_of_bins().then(|| (0.0, bin.moments()));
+    let latest = statistic.uses_bins().then(|| (0.0, bin.moments()));
     let parts = window.parts().chain(latest);
     // Returns the mean of a quantity over the window. For each part of the window, `sum` returns the quantity times the
     // weight of the part.
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_that_is_not_a_mean_has_no_width() {
+    fn statistics_that_are_not_means_have_no_uncertainty() {
         let mut random = normal(5);
         for statistic in [Statistic::Min, Statistic::Max, Statistic::Last] {
             assert_eq!(of(statistic, 2.0, &mut random).width(), 0.0);

@@ -5,10 +5,10 @@ use proptest::prelude::*;
 use super::*;
 
 /// A sample: seconds since the previous one, whether it is in the air, and the motors.
-type Given = (f64, Option<bool>, [f64; 4]);
+type SampleCase = (f64, Option<bool>, [f64; 4]);
 
 /// Calm, violent and idle phases, with gaps, unknown motors and clocks that go back.
-fn flights() -> impl Strategy<Value = Vec<Given>> {
+fn flights() -> impl Strategy<Value = Vec<SampleCase>> {
     let motors = prop_oneof![
         4 => Just([0.5; 4]),
         4 => Just(LIMIT),
@@ -35,7 +35,7 @@ fn flights() -> impl Strategy<Value = Vec<Given>> {
     })
 }
 
-fn push_all(assessor: &mut Assessor, (t_s, in_air, motors): &Given) -> String {
+fn push_all(assessor: &mut Assessor, (t_s, in_air, motors): &SampleCase) -> String {
     let update = assessor.push(&Sample {
         t_s: *t_s,
         motors,
@@ -117,7 +117,7 @@ fn a_state_of_another_version_profile_or_craft_is_refused() {
 
 /// If this fails because a type of the state got or lost a field, raise `state::VERSION`.
 #[test]
-fn the_layout_is_that_of_the_version() {
+fn the_saved_layout_matches_its_version() {
     let mut assessor = begin(&shipped::flagred_paper());
     for i in 0..2000 {
         let motors = if i < 1000 { HOVER } else { LIMIT };

@@ -180,7 +180,7 @@ fn a_risk_with_an_unknown_motor_has_no_interval_until_it_is_known_again() {
 }
 
 #[test]
-fn a_finding_whose_interval_contains_its_threshold_tells_so() {
+fn a_finding_reports_that_its_interval_contains_the_threshold() {
     let estimator = shipped::flagred();
     let flown = assessed(&estimator, 50.0);
     let finding = flown

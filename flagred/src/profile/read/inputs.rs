@@ -231,7 +231,7 @@ fn input(
                 format!("{what} has both `window_s` and `time_constant_s`"),
                 help.into(),
             ))
-        } else if !statistic.is_of_weights() {
+        } else if !statistic.supports_exponential() {
             let help = format!(
                 "`time_constant_s` is for `mean`, `std`, `rms` and shares of time; write `window_s` for `{key}`"
             );
@@ -248,20 +248,16 @@ fn input(
         .get("if_missing")
         .and_then(|node| node.finite("`if_missing`", found));
     if let Some(entry) = fields.entry("if_missing")
-        && signal.is_made_of_motors()
+        && signal.is_computed_from_commands()
     {
         let message = "`if_missing` is for signals that a vehicle may lack, and the motor commands are not such a signal";
         let help = "remove it: without the commands of the motors the risk is unknown";
         found.push(Diagnostic::error("if-missing", entry.key_span.clone(), message).help(help));
     }
-    let needs_one = statistic.is_of_bins() || statistic.is_of_slots();
+    let needs_one = statistic.uses_bins() || statistic.uses_slots();
     if needs_one && motors == Motors::Pooled && signal.is_of_motors() {
         let message = format!("`{key}` needs one value for all motors");
-        let over = if statistic.is_of_bins() {
-            "std"
-        } else {
-            "mean"
-        };
+        let over = if statistic.uses_bins() { "std" } else { "mean" };
         let signal = Signal::name_of(&signal).unwrap_or("motor_command");
         let help = match statistic {
             Statistic::Percentile(number) if *key == "percentile" => {

@@ -8,7 +8,7 @@ use fuzzy::{
 };
 
 use super::Mistakes;
-use crate::profile::{Followed, Reliability};
+use crate::profile::{ErrorFrequency, Reliability};
 
 pub(super) fn reliability(fields: &Fields, found: &mut Mistakes) -> Vec<Reliability> {
     let items = fields.get("reliability").and_then(|node| {
@@ -69,7 +69,7 @@ fn pair(node: &Node, found: &mut Mistakes) -> Option<[f64; 2]> {
     Some([from.finite("`risk`", found)?, to.finite("`risk`", found)?])
 }
 
-fn followed(fields: &Fields, key: &str, found: &mut Mistakes) -> Option<Followed> {
+fn followed(fields: &Fields, key: &str, found: &mut Mistakes) -> Option<ErrorFrequency> {
     let node = fields.get(key)?;
     let help = format!("write `{key}: {{moments: 889, followed: 759}}`");
     let fields = node.fields(&format!("`{key}`"), &["moments", "followed"], &help, found)?;
@@ -78,7 +78,7 @@ fn followed(fields: &Fields, key: &str, found: &mut Mistakes) -> Option<Followed
         let node = fields.require(key, &help, found)?;
         node.whole(&format!("`{key}`"), 0, found)
     };
-    let counts = Followed {
+    let counts = ErrorFrequency {
         moments: count("moments")?,
         followed: count("followed")?,
     };

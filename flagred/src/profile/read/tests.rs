@@ -1,6 +1,6 @@
 use super::*;
 use crate::{
-    profile::{Followed, Reliability},
+    profile::{ErrorFrequency, Reliability},
     source::{Motors, Signal, Source, Statistic},
     verdict::{LevelSettings, Limit, NoticeSettings, Threshold, VerdictSettings},
 };
@@ -199,7 +199,7 @@ reliability:
         ["d", "low_battery", "low battery", "Land."]
     );
     assert_eq!(words.text, "The battery had {value} V, or {percent} %.");
-    let counts = |moments, followed| Some(Followed { moments, followed });
+    let counts = |moments, followed| Some(ErrorFrequency { moments, followed });
     assert_eq!(
         profile.reliability,
         [

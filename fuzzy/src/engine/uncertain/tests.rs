@@ -96,7 +96,7 @@ fn invalid_intervals_are_errors() {
 
 /// Tests rules whose firing strengths are products of degrees of different inputs and are summed for each term.
 #[test]
-fn votes_have_exact_bounds() {
+fn products_of_different_inputs_have_exact_bounds() {
     let outputs = |defuzzifier: &str| {
         format!(
             "{{speed: {{range: [0, 8], {defuzzifier}, aggregation: sum}}, share: {{range: [0, 1], partition: [less, more]}}}}"

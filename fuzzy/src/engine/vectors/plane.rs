@@ -76,7 +76,7 @@ impl Plane {
         let near = |x: f64, side: &PlaneInput| larger(smaller(x, side.high), side.low);
         let (x, y) = (near(inputs[0], first), near(inputs[1], second));
         let clamped = (x != inputs[0]) | (y != inputs[1]);
-        // Values that are not finite are outside the range, which is rare.
+        // Non-finite values were clamped too. Clamping is rare, so the second check is usually skipped.
         let infinite = clamped && !(inputs[0].is_finite() && inputs[1].is_finite());
         let (row, column) = (first.cuts.interval(simd, x), second.cuts.interval(simd, y));
         let Some(region) = self.regions.get(row * self.columns + column) else {

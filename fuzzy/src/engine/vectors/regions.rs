@@ -21,7 +21,7 @@ impl Plane {
             return None;
         };
         let Conjunctions::Uniform {
-            actions_a_cell: 1,
+            actions_per_cell: 1,
             first_action,
             sums,
         } = table.conjunctions

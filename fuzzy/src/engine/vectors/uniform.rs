@@ -47,7 +47,7 @@ impl Uniform {
     /// Prepares a table for vector instructions; `None` if it is not supported.
     pub(in super::super) fn new(table: &OwnedTable) -> Option<Self> {
         let Conjunctions::Uniform {
-            actions_a_cell: 1,
+            actions_per_cell: 1,
             first_action,
             sums: false,
         } = table.conjunctions

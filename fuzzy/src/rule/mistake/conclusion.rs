@@ -28,7 +28,7 @@ pub(super) fn weight_advice(rest: &str) -> String {
 }
 
 /// Returns a suggestion for text after a conclusion or after its weight.
-pub(super) fn behind_conclusion(before: &str, rest: &str, weighted: bool) -> Option<String> {
+pub(super) fn after_conclusion(before: &str, rest: &str, weighted: bool) -> Option<String> {
     let found = found_here(rest);
     let number_behind = |sign: &str| {
         let number = rest.strip_prefix(sign)?.split_whitespace().next()?;

@@ -7,7 +7,7 @@ use super::{
     words::{found_here, last_input, sign},
 };
 use crate::{
-    diagnostic::{Diagnostic, meant, nearest, suggest},
+    diagnostic::{Diagnostic, likely_candidates, nearest, suggest},
     rule::{Hedge, Rule, is_plain_name, parse::keyword},
 };
 
@@ -26,7 +26,7 @@ pub(super) fn two_words(span: core::ops::Range<usize>, first: &str, second: &str
     let hedges: Vec<&str> = Hedge::ALL.iter().map(|hedge| hedge.word()).collect();
     let message = format!("there is no hedge `{first}`");
     let mut help = suggest(first, hedges.iter().copied()).unwrap_or_default();
-    if meant(first, &hedges).is_empty() {
+    if likely_candidates(first, &hedges).is_empty() {
         help += &format!("; put a name of two words in quotes: `\"{first} {second}\"`");
     }
     Diagnostic::error("rule-syntax", span, message).help(help)
@@ -136,7 +136,7 @@ pub(super) fn is_missing(
         });
     }
     let is = |word: &str| found.eq_ignore_ascii_case(word);
-    if let Some(help) = spoken(name, rest, before) {
+    if let Some(help) = phrase_after_name(name, rest, before) {
         return Some(help);
     }
     if name.eq_ignore_ascii_case("ELSE") {
@@ -238,7 +238,7 @@ const CHANGES: [&str; 8] = [
 
 /// Returns a suggestion for a phrase of natural language after the name of a variable: `IN (mild, hot)`, `NOT IS hot`,
 /// and `IS more or less hot`, in which `less` was parsed as a name.
-pub(super) fn spoken(name: &str, rest: &str, before: &str) -> Option<String> {
+pub(super) fn phrase_after_name(name: &str, rest: &str, before: &str) -> Option<String> {
     let found = found_here(rest);
     let behind = rest.get(found.len()..).unwrap_or("").trim_start();
     let is = |words: &[&str]| words.iter().any(|word| found.eq_ignore_ascii_case(word));

@@ -36,7 +36,7 @@ impl SetArrays<'_> {
                     right - part.area
                 };
                 if value.is_none() && start <= half && half <= start + part.area {
-                    value = Some(self.where_area_is(&part, half - start));
+                    value = Some(self.position_of_area(&part, half - start));
                 }
                 if part.from_left {
                     left += part.area;
@@ -51,7 +51,7 @@ impl SetArrays<'_> {
     }
 
     /// Returns the position in a part up to which the part, from its lower end, has the given area.
-    fn where_area_is(&self, part: &SetSegment<'_>, area: f64) -> f64 {
+    fn position_of_area(&self, part: &SetSegment<'_>, area: f64) -> f64 {
         let units = area / part.degree;
         let Some(flank) = part.flank else {
             return smaller(part.to, part.from + units * self.measure.unit);
@@ -151,7 +151,7 @@ impl SetArrays<'_> {
         } else {
             let (foot, low) = flank.foot();
             let clip = if low < strength {
-                flank.where_degree_is(strength)
+                flank.position_of_degree(strength)
             } else {
                 foot
             };

@@ -86,7 +86,7 @@ impl Spans {
             let x = if smaller(flank.left, flank.right) >= level {
                 if flank.rises() { flank.from } else { flank.to }
             } else {
-                flank.where_degree_is(level)
+                flank.position_of_degree(level)
             };
             if flank.rises() {
                 self.right = larger(section.from, smaller(self.right, x));

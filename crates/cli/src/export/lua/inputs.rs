@@ -278,8 +278,8 @@ impl Window {
 /// The number of slots of a window in the script: one for each call or bin and a few spare ones, but at most 130, as
 /// in the monitor.
 fn capacity(window_s: f64, step_s: f64) -> u32 {
-    const MOST: f64 = 130.0;
-    ((window_s / step_s).floor() + 4.0).min(MOST) as u32
+    const MAX_SLOTS: f64 = 130.0;
+    ((window_s / step_s).floor() + 4.0).min(MAX_SLOTS) as u32
 }
 
 /// The number of slots in the window of the elevated risk.

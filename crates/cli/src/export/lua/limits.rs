@@ -22,9 +22,9 @@ pub(super) struct Size {
     /// The largest number of conditions in a rule.
     pub(super) conditions: usize,
     pub(super) windows: usize,
-    /// The number of statistics of windows.
+    /// The number of window statistics.
     pub(super) rows: usize,
-    /// The number of numbers that windows store.
+    /// The number of values that windows store.
     pub(super) numbers: usize,
     pub(super) rules: usize,
     /// The number of terms of inputs.

@@ -116,7 +116,7 @@ pub(super) fn text(estimator: &Estimator, plan: &Plan<'_>) -> Result<String, Uns
     let parts = PARTS.iter().filter(|(name, _)| match *name {
         "notices" => reported.contains(&true),
         "balance" => reported[1],
-        "geometry" => filling.holds("geometry"),
+        "geometry" => filling.is_set("geometry"),
         _ => true,
     });
     let parts: Vec<(&str, String)> = parts
@@ -233,12 +233,12 @@ fn number(number: f64) -> String {
     }
 }
 
-/// Returns a text of a rule set as a string literal. The escapes of Rust's debug form are valid in Lua.
+/// Converts text from a rule set to a string literal. The escapes of Rust's debug form are valid in Lua.
 fn quoted(text: &str) -> String {
     format!("{:?}", fuzzy::drawing::visible(text))
 }
 
-/// Returns a text of a rule set for use in a comment.
+/// Escapes text from a rule set for use in a comment.
 fn comment(text: &str) -> String {
     fuzzy::drawing::visible(text).into_owned()
 }

@@ -204,7 +204,7 @@ fn stages<'a>(model: &Model, plan: &Plan<'a>) -> Vec<Stage<'a>> {
     let chain = Chain {
         table: plan.rules.table,
         stages: plan.rules.stages,
-        places: plan.rules.places,
+        indices: plan.rules.indices,
     };
     let indices = |all: &[u32]| all.iter().map(|index| *index as usize).collect();
     let stages = chain.parts().map(|(table, place)| Stage {

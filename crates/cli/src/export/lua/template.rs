@@ -4,7 +4,7 @@
 /// The values for a template.
 #[derive(Default)]
 pub(super) struct TemplateValues {
-    holds: Vec<(&'static str, bool)>,
+    conditions: Vec<(&'static str, bool)>,
     lines: Vec<(&'static str, Vec<String>)>,
     constants: Vec<(&'static str, String)>,
 }
@@ -12,7 +12,7 @@ pub(super) struct TemplateValues {
 impl TemplateValues {
     /// Sets a condition.
     pub(super) fn set(&mut self, name: &'static str, holds: bool) {
-        self.holds.push((name, holds));
+        self.conditions.push((name, holds));
     }
 
     /// Sets the lines that replace `-- @put name`.
@@ -31,7 +31,7 @@ impl TemplateValues {
         for line in template.lines() {
             let words: Vec<&str> = line.split_whitespace().collect();
             match words[..] {
-                ["--", "@if", name] => kept.push(self.holds(name)),
+                ["--", "@if", name] => kept.push(self.is_set(name)),
                 ["--", "@else"] => {
                     if let Some(last) = kept.last_mut() {
                         *last = !*last;
@@ -88,8 +88,8 @@ impl TemplateValues {
         out.push_str(rest);
     }
 
-    pub(super) fn holds(&self, name: &str) -> bool {
-        self.holds
+    pub(super) fn is_set(&self, name: &str) -> bool {
+        self.conditions
             .iter()
             .any(|(known, holds)| *known == name && *holds)
     }

@@ -183,7 +183,8 @@ pub(crate) enum StopReason {
     WatchEnded,
     /// Motors or limits became known too late to assess the flight again from its beginning: the
     /// rest is assessed as a separate flight.
-    SetUpAnew,
+    #[serde(rename = "set_up_anew")]
+    Reconfigured,
 }
 
 /// A flight, or the part of it that was received.

@@ -4,7 +4,7 @@
 use flagred_flightlog::mavlink::Pulses;
 
 /// Maximum number of stored samples: 20 minutes at 25 Hz, in 3 MB.
-pub(super) const MOST: usize = 30_000;
+pub(super) const MAX_SAMPLES: usize = 30_000;
 
 /// A sample as it was received.
 #[derive(Debug, Clone)]

@@ -167,7 +167,7 @@ impl<'e> Bench<'e> {
     }
 
     /// The text of the latest level.
-    fn said(&self) -> &str {
+    fn last_text(&self) -> &str {
         let mut events = self.events.iter().rev();
         let text = events.find_map(|event| match event {
             Event::Level { text, .. } => Some(text.as_str()),
@@ -239,9 +239,9 @@ fn a_given_range_is_used_until_the_vehicle_reports_its_own() {
     bench.wait_beating(12, false);
     let setup = bench.setups()[0];
     assert_eq!((setup.range.low, setup.range.high), (1100.0, 1900.0));
-    let said = "commands from 1100 to 1900 us, given by the user";
+    let assumption = "commands from 1100 to 1900 us, given by the user";
     assert!(
-        setup.assumed.contains(&said.to_owned()),
+        setup.assumed.contains(&assumption.to_owned()),
         "{:?}",
         setup.assumed
     );
@@ -296,7 +296,7 @@ fn a_flight_at_the_limit_is_reported_once_per_level() {
     let levels = bench.count(|event| matches!(event, Event::Level { .. }));
     assert!((1..=2).contains(&levels), "{levels}");
     assert_eq!(bench.count_sent(texts), levels);
-    let text = bench.said();
+    let text = bench.last_text();
     assert!(text.starts_with("FLAGRED: FAIL risk "), "{text}");
     assert!(text.ends_with(" %, lower limit, motor 1"), "{text}");
     // For half a minute of the receiver's clock, values are sent four times a second.
@@ -319,7 +319,7 @@ fn a_risk_without_a_motor_at_its_limit_is_reported_with_its_meaning() {
         let [left, right] = [1500 - roll, 1500 + roll];
         [left, right, right, left]
     });
-    let text = bench.said().to_owned();
+    let text = bench.last_text().to_owned();
     assert!(
         text.starts_with("FLAGRED: WARN risk ") || text.starts_with("FLAGRED: FAIL risk "),
         "{text}"
@@ -382,10 +382,14 @@ fn good_is_never_reported_for_an_unknown_risk() {
     bench.hover(10.0, 40.0, 1500);
     let weak = |i: u32| [1700 + (i % 5) as u16, 1500, 1500 - (i % 5) as u16, 1500];
     bench.fly(50.0, 20.0, weak);
-    assert!(bench.said().contains("motor 1 weak: +"), "{}", bench.said());
+    assert!(
+        bench.last_text().contains("motor 1 weak: +"),
+        "{}",
+        bench.last_text()
+    );
     bench.wait(6.0);
     bench.fly(76.0, 0.4, weak);
-    assert_eq!(bench.said(), "FLAGRED: risk unknown, last level WARN");
+    assert_eq!(bench.last_text(), "FLAGRED: risk unknown, last level WARN");
     bench.fly(76.4, 30.6, weak);
     let before = bench.count(|event| matches!(event, Event::Level { .. }));
     // The vehicle is on the ground.

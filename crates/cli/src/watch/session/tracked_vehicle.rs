@@ -22,9 +22,9 @@ const SILENT_S: f64 = 2.0;
 /// A watch that sends no requests waits this long for parameters before it assumes them.
 const LISTEN_S: f64 = 10.0;
 /// If a vehicle is in the air, the watch waits no longer than this before it assumes missing parameters.
-const HURRY_S: f64 = 1.0;
+const IN_AIR_WAIT_S: f64 = 1.0;
 /// Minimum seconds between two reports of a station that reduces the rate of the motor commands.
-const TELL_SLOWED_S: f64 = 60.0;
+const SLOWED_REPORT_INTERVAL_S: f64 = 60.0;
 
 /// A vehicle that is followed.
 pub(super) struct TrackedVehicle {
@@ -32,7 +32,7 @@ pub(super) struct TrackedVehicle {
     /// The origin of the vehicle's packets.
     pub(super) source: Source,
     /// Whether motor commands with an advancing clock were received.
-    pub(super) is_proved: bool,
+    pub(super) is_confirmed: bool,
     /// Whether the connection on which the vehicle was received is closed.
     pub(super) is_gone: bool,
     pub(super) requests: Requests,
@@ -97,7 +97,7 @@ impl TrackedVehicle {
         TrackedVehicle {
             telemetry,
             source,
-            is_proved: false,
+            is_confirmed: false,
             is_gone: false,
             requests: Requests::new(),
             found_s: now_s,
@@ -167,7 +167,8 @@ impl TrackedVehicle {
     /// The rate of the motor commands, if a station reduced it and a report is due.
     pub(super) fn slowed_hz(&mut self, now_s: f64) -> Option<f64> {
         let rate_hz = self.requests.take_slowed_hz()?;
-        let is_due = (self.slowed_reported_s).is_none_or(|told_s| now_s - told_s >= TELL_SLOWED_S);
+        let is_due = (self.slowed_reported_s)
+            .is_none_or(|reported_s| now_s - reported_s >= SLOWED_REPORT_INTERVAL_S);
         is_due.then(|| {
             self.slowed_reported_s = Some(now_s);
             rate_hz
@@ -217,20 +218,20 @@ impl TrackedVehicle {
         } else {
             parameters_known(&self.telemetry) || waited_s >= LISTEN_S
         };
-        let hurries =
-            !done && self.watch.is_none() && !self.history.is_empty() && waited_s >= HURRY_S;
+        let is_urgent =
+            !done && self.watch.is_none() && !self.history.is_empty() && waited_s >= IN_AIR_WAIT_S;
         // A setup that changed on the ground does not apply to the previous flight, which ends with the next commands.
         if self.watch.as_ref().is_some_and(|watch| watch.is_flying) && !self.telemetry.is_in_air() {
             return None;
         }
         // Late parameters are not awaited, but they are used.
         let is_due = done && (self.telemetry.take_parameters_changed() || !self.set_up_tried);
-        if !is_due && !hurries {
+        if !is_due && !is_urgent {
             return None;
         }
         let setup = self.telemetry.setup();
         let found = setup.motors.len();
-        if hurries && setup.motors_expected() != Some(found) {
+        if is_urgent && setup.motors_expected() != Some(found) {
             return None;
         }
         if done {
@@ -272,7 +273,7 @@ impl TrackedVehicle {
         ready(&setup, &self.telemetry, out);
         let mut watch = AssessedVehicle::new(setup, assessor, now_s);
         let Some(flown) = self.history.whole() else {
-            let verdict = self.end_flight(End::LeftInAir(StopReason::SetUpAnew), out);
+            let verdict = self.end_flight(End::LeftInAir(StopReason::Reconfigured), out);
             self.watch = Some(watch);
             return verdict;
         };

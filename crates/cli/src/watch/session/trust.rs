@@ -86,7 +86,7 @@ struct Candidate {
 
 /// The evidence for a candidate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Proof {
+pub(super) enum Evidence {
     None,
     /// Several consistent heartbeats.
     Beats,
@@ -117,7 +117,7 @@ impl Candidates {
         source: Source,
         system: u8,
         vehicle: &Vehicle,
-    ) -> Proof {
+    ) -> Evidence {
         let Some(candidate) = self.find(system, source) else {
             self.add(Candidate {
                 system,
@@ -127,7 +127,7 @@ impl Candidates {
                 beat_s: now_s,
                 commands: 0,
             });
-            return Proof::None;
+            return Evidence::None;
         };
         if candidate.vehicle != *vehicle || now_s - candidate.beat_s > BEAT_WAIT_S {
             candidate.vehicle = vehicle.clone();
@@ -136,9 +136,9 @@ impl Candidates {
         candidate.beats += 1;
         candidate.beat_s = now_s;
         match (candidate.beats, candidate.commands) {
-            (..BEATS, _) => Proof::None,
-            (_, ..COMMANDS) => Proof::Beats,
-            _ => Proof::Commands,
+            (..BEATS, _) => Evidence::None,
+            (_, ..COMMANDS) => Evidence::Beats,
+            _ => Evidence::Commands,
         }
     }
 

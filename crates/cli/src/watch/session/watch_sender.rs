@@ -5,12 +5,12 @@ use std::collections::VecDeque;
 use flagred_flightlog::mavlink::{Packet, Sender, Version, dialect::MavMessage};
 
 use super::{Event, SessionOutput};
-use crate::watch::voice;
+use crate::watch::messages;
 
 /// Another watch is considered gone after this silence.
 const GONE_S: f64 = 5.0;
 /// Minimum seconds between two reports that the watch starts or stops sending.
-const TELL_S: f64 = 5.0;
+const REPORT_INTERVAL_S: f64 = 5.0;
 /// Number of sent packets that are stored, to recognise those that a link returns.
 const ECHOES: usize = 16;
 /// Seconds within which PX4 may repeat, as if it were its own, the latest value that it received.
@@ -20,7 +20,7 @@ const VALUES: usize = 32;
 /// Seconds to wait for another watch to send a text before this watch sends it.
 const TEXT_WAIT_S: f64 = 1.0;
 /// A text is not sent if another watch sent one on the same topic within this many seconds before.
-const TEXT_HEARD_S: f64 = 2.0;
+const RECENT_TEXT_S: f64 = 2.0;
 /// Maximum number of delayed texts, and of texts received from other watches.
 const TEXTS: usize = 8;
 
@@ -75,7 +75,7 @@ impl WatchSender {
     }
 
     /// Returns whether this watch may send requests.
-    pub(super) fn asks(&self) -> bool {
+    pub(super) fn may_request(&self) -> bool {
         self.sender.is_some()
     }
 
@@ -86,7 +86,7 @@ impl WatchSender {
         self.sender.is_some() && (self.insists || !yields)
     }
 
-    pub(super) fn ask(
+    pub(super) fn request(
         &mut self,
         (version, system): (Version, u8),
         message: &MavMessage,
@@ -98,7 +98,7 @@ impl WatchSender {
     }
 
     /// Sends a message, unless another watch has precedence.
-    pub(super) fn say(
+    pub(super) fn send(
         &mut self,
         now_s: f64,
         to: (Version, u8),
@@ -128,11 +128,11 @@ impl WatchSender {
             self.send_message(to, message, out);
             return;
         }
-        let topic = voice::topic(message);
-        let is_heard = |(received_s, received): &(f64, String)| {
-            now_s - received_s <= TEXT_HEARD_S && topic.as_ref() == Some(received)
+        let topic = messages::topic(message);
+        let is_recent = |(received_s, received): &(f64, String)| {
+            now_s - received_s <= RECENT_TEXT_S && topic.as_ref() == Some(received)
         };
-        if self.sender.is_none() || self.received.iter().any(is_heard) {
+        if self.sender.is_none() || self.received.iter().any(is_recent) {
             return;
         }
         self.waiting.truncate(TEXTS - 1);
@@ -145,7 +145,7 @@ impl WatchSender {
     }
 
     fn send_message(&mut self, to: (Version, u8), message: &MavMessage, out: &mut SessionOutput) {
-        self.ask(to, message, out);
+        self.request(to, message, out);
         if let Some(packet) = out.packets.last() {
             self.sent.truncate(ECHOES - 1);
             self.sent.push_front(packet.clone());
@@ -171,15 +171,15 @@ impl WatchSender {
         if self.sent.iter().any(|sent| sent == packet.bytes) {
             return;
         }
-        if let Some(topic) = voice::topic_of(packet) {
+        if let Some(topic) = messages::topic_of(packet) {
             self.waiting
                 .retain(|waits| waits.topic.as_ref() != Some(&topic));
             self.received.truncate(TEXTS - 1);
             self.received.push_front((now_s, topic));
             return;
         }
-        let age_s = voice::age_of(packet);
-        let risk = voice::risk_of(packet);
+        let age_s = messages::age_of(packet);
+        let risk = messages::risk_of(packet);
         if age_s.is_none() && risk.is_none() {
             return;
         }
@@ -253,7 +253,9 @@ impl WatchSender {
         let is_sending = self.is_sending();
         let is_news = match self.reported {
             None => true,
-            Some((told_s, reported)) => reported != is_sending && now_s - told_s >= TELL_S,
+            Some((reported_s, reported)) => {
+                reported != is_sending && now_s - reported_s >= REPORT_INTERVAL_S
+            }
         };
         if is_news {
             self.reported = Some((now_s, is_sending));

@@ -42,7 +42,7 @@ fn stranger(random: &mut Rng) -> (Source, Vec<u8>) {
         4 => MavMessage::NAMED_VALUE_FLOAT(NAMED_VALUE_FLOAT_DATA {
             time_boot_ms: random.u32(..),
             value: 1.0,
-            name: voice::RISK.into(),
+            name: messages::RISK.into(),
         }),
         _ => MavMessage::STATUSTEXT(STATUSTEXT_DATA::default()),
     };
@@ -125,7 +125,7 @@ fn hovering(t_s: f64) -> MavMessage {
 }
 
 /// Creates a link with such a short history that it is full before memory is measured. The bound of the history is tested separately, see
-/// [`MOST`](super::super::history::MOST).
+/// [`MAX_SAMPLES`](super::super::history::MAX_SAMPLES).
 fn link(estimator: &Estimator) -> Link<'_> {
     let session = Session::new(estimator, Some(Sender::new(191)), false).keeping(500);
     let mut bench = Bench {

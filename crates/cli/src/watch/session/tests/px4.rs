@@ -296,7 +296,7 @@ impl Bench<'_> {
 
 /// A ground station that connects in flight loads all parameters, including the thrust coefficients.
 #[test]
-fn parameters_that_change_nothing_change_nothing() {
+fn parameters_without_effect_do_not_interrupt_the_flight() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.px4_beat();
@@ -341,7 +341,9 @@ fn a_value_forwarded_by_px4_is_not_taken_for_another_watch() {
         let new = bench.sent[before..]
             .iter()
             .find_map(|message| match message {
-                MavMessage::NAMED_VALUE_FLOAT(value) if value.name.to_str() == Ok(voice::RISK) => {
+                MavMessage::NAMED_VALUE_FLOAT(value)
+                    if value.name.to_str() == Ok(messages::RISK) =>
+                {
                     Some(value.value)
                 }
                 _ => None,
@@ -350,7 +352,7 @@ fn a_value_forwarded_by_px4_is_not_taken_for_another_watch() {
         risk = new.or(risk);
         if let Some(was) = before.filter(|_| new.is_some()) {
             echoes += 1;
-            bench.take_message(&value(voice::RISK, was, 90_000 + echoes));
+            bench.take_message(&value(messages::RISK, was, 90_000 + echoes));
         }
     });
     assert!(echoes > 30, "{echoes}");
@@ -358,7 +360,7 @@ fn a_value_forwarded_by_px4_is_not_taken_for_another_watch() {
     assert_eq!(bench.count(other), 0);
     // A module on the vehicle that sends a risk of its own counts as another watch.
     bench.px4_fly_and(130.0, 3.0, [1500; 4], |bench, _| {
-        bench.take_message(&value(voice::RISK, 0.123, 1));
+        bench.take_message(&value(messages::RISK, 0.123, 1));
     });
     assert_eq!(bench.count(other), 1);
 }
@@ -378,7 +380,7 @@ fn a_warning_is_sent_if_another_watch_does_not_warn() {
         };
         let mut reported = 0;
         bench.px4_fly_and(100.0, 20.0, [1000, 2000, 1000, 2000], |bench, _| {
-            bench.take_message(&value(voice::RISK, 0.123, 1));
+            bench.take_message(&value(messages::RISK, 0.123, 1));
             let levels = bench.events.iter().filter_map(|event| match event {
                 Event::Level { level, .. } => *level,
                 _ => None,
@@ -386,7 +388,7 @@ fn a_warning_is_sent_if_another_watch_does_not_warn() {
             let levels: Vec<Level> = levels.collect();
             if warns && levels.len() > reported {
                 let text = format!("FLAGRED: {} risk 99 %", levels[reported]);
-                bench.take_message(&voice::status(levels[reported], &text));
+                bench.take_message(&messages::status(levels[reported], &text));
                 reported = levels.len();
             }
         });

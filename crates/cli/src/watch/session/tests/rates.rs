@@ -11,7 +11,7 @@ fn old_way(message: &MavMessage) -> bool {
     matches!(message, MavMessage::REQUEST_DATA_STREAM(_))
 }
 
-fn asks(bench: &Bench<'_>) -> (usize, usize) {
+fn count_requests(bench: &Bench<'_>) -> (usize, usize) {
     (bench.count_sent(new_way), bench.count_sent(old_way))
 }
 
@@ -58,17 +58,17 @@ fn rates_are_requested_until_they_arrive_also_by_the_old_message() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.wait_beating(1, false);
-    assert_eq!(asks(&bench), (0, 0), "it listens first");
+    assert_eq!(count_requests(&bench), (0, 0), "it listens first");
     bench.wait_beating(3, false);
-    assert_eq!(asks(&bench), (6, 0));
+    assert_eq!(count_requests(&bench), (6, 0));
     bench.wait_beating(2, false);
-    assert_eq!(asks(&bench), (6, 3));
+    assert_eq!(count_requests(&bench), (6, 3));
     // The values arrive, so nothing more is requested.
     bench.all_parameters();
     bench.stream(10.0, 8.0, 25, 5);
-    let (new, old) = asks(&bench);
+    let (new, old) = count_requests(&bench);
     bench.stream(18.0, 20.0, 25, 5);
-    assert_eq!(asks(&bench), (new, old));
+    assert_eq!(count_requests(&bench), (new, old));
 
     // A vehicle that refuses a request immediately receives the older kind of request instead.
     let mut bench = Bench::new(&estimator, Some(191));
@@ -76,7 +76,7 @@ fn rates_are_requested_until_they_arrive_also_by_the_old_message() {
     bench.wait(1.2);
     bench.take_message(&accepted(1, (1, 191), MavResult::MAV_RESULT_UNSUPPORTED));
     bench.wait(0.1);
-    assert_eq!(asks(&bench), (3, 3));
+    assert_eq!(count_requests(&bench), (3, 3));
 }
 
 /// Requests affect all receivers on a link. Therefore a sufficient rate is not requested, because that could reduce
@@ -89,7 +89,7 @@ fn a_rate_that_is_high_enough_is_not_requested() {
         bench.all_parameters();
         bench.stream(10.0, 2.9, motors_hz, others_hz);
         assert_eq!(
-            asks(&bench),
+            count_requests(&bench),
             (expected, 0),
             "{motors_hz} Hz, {others_hz} Hz"
         );
@@ -123,7 +123,7 @@ fn the_station_that_slows_the_motor_commands_is_named_once() {
     bench.take_message(&accepted(1, (255, 190), MavResult::MAV_RESULT_UNSUPPORTED));
     bench.take_message(&accepted(1, (255, 190), MavResult::MAV_RESULT_ACCEPTED));
     bench.stream(20.0, 5.0, 25, 5);
-    assert_eq!(asks(&bench), (0, 0));
+    assert_eq!(count_requests(&bench), (0, 0));
     let slowed = |bench: &Bench<'_>| {
         let all = bench.events.iter().filter_map(|event| match event {
             Event::Slowed {
@@ -143,7 +143,7 @@ fn the_station_that_slows_the_motor_commands_is_named_once() {
         matches!(reported[..], [(Some(255), Some(190), rate_hz)] if rate_hz < 12.5),
         "{reported:?}"
     );
-    assert!(asks(&bench).0 > 0, "the rate is asked for again");
+    assert!(count_requests(&bench).0 > 0, "the rate is asked for again");
     let texts = bench.sent.iter().filter_map(|message| match message {
         MavMessage::STATUSTEXT(status) => Some(status.text.to_str().unwrap().to_owned()),
         _ => None,
@@ -173,6 +173,9 @@ fn the_reported_rate_is_measured_after_the_drop() {
         });
         let reported = reported.unwrap_or_else(|| panic!("{tenths}: not told within 6.5 s"));
         assert!((1.4..2.6).contains(&reported), "{tenths}: {reported} Hz");
-        assert!(asks(&bench).0 > 0, "{tenths}: the rate is asked for again");
+        assert!(
+            count_requests(&bench).0 > 0,
+            "{tenths}: the rate is asked for again"
+        );
     }
 }

@@ -24,7 +24,7 @@ impl Peer {
         }
     }
 
-    fn say(&mut self, bench: &mut Bench<'_>, message: &MavMessage) {
+    fn send(&mut self, bench: &mut Bench<'_>, message: &MavMessage) {
         let bytes = self.sender.packet(Version::V2, self.system, message);
         bench.hear_bytes(self.source, &bytes);
     }
@@ -49,7 +49,7 @@ fn one_stray_heartbeat_does_not_select_a_vehicle() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     let mut stray = Peer::new(1, 9, 1);
-    stray.say(&mut bench, &quadrotor(true));
+    stray.send(&mut bench, &quadrotor(true));
     assert_eq!(bench.followed(), None);
     bench.wait_beating(1, false);
     assert_eq!(bench.followed(), Some(1));
@@ -58,14 +58,14 @@ fn one_stray_heartbeat_does_not_select_a_vehicle() {
     let mut bench = Bench::new(&estimator, Some(191));
     let mut vehicle = Peer::new(2, 1, 1);
     for i in 0..20_u32 {
-        stray.say(&mut bench, &quadrotor(true));
+        stray.send(&mut bench, &quadrotor(true));
         bench.wait(0.5);
         if i == 3 {
             assert_eq!(bench.followed(), Some(9));
         }
         if i >= 4 {
-            vehicle.say(&mut bench, &quadrotor(false));
-            vehicle.say(&mut bench, &servo(f64::from(i) * 0.5, [1500; 4]));
+            vehicle.send(&mut bench, &quadrotor(false));
+            vehicle.send(&mut bench, &servo(f64::from(i) * 0.5, [1500; 4]));
         }
     }
     assert_eq!(bench.followed(), Some(1));
@@ -85,9 +85,9 @@ fn another_vehicle_is_selected_if_the_first_only_sends_heartbeats() {
     let mut bench = Bench::new(&estimator, Some(191));
     let (mut stray, mut vehicle) = (Peer::new(1, 9, 1), Peer::new(2, 1, 1));
     for i in 0..9 {
-        stray.say(&mut bench, &quadrotor(true));
+        stray.send(&mut bench, &quadrotor(true));
         if i > 3 {
-            vehicle.say(&mut bench, &quadrotor(false));
+            vehicle.send(&mut bench, &quadrotor(false));
         }
         bench.wait(1.0);
     }
@@ -107,9 +107,9 @@ fn a_second_sender_is_reported_once_and_ignored_until_the_first_is_silent() {
         ..EXTENDED_SYS_STATE_DATA::default()
     });
     for i in 0..100 {
-        liar.say(&mut bench, &quadrotor(false));
-        liar.say(&mut bench, &on_ground);
-        liar.say(&mut bench, &servo(20.0 + f64::from(i) * 0.04, [1999; 4]));
+        liar.send(&mut bench, &quadrotor(false));
+        liar.send(&mut bench, &on_ground);
+        liar.send(&mut bench, &servo(20.0 + f64::from(i) * 0.04, [1999; 4]));
     }
     bench.hover(20.0, 10.0, 1500);
     assert_eq!(bench.reported_doubts(), [UntrustedPacket::SecondSender]);
@@ -120,8 +120,8 @@ fn a_second_sender_is_reported_once_and_ignored_until_the_first_is_silent() {
     // The first sender is silent: the flight continues with the second one, and that is reported.
     bench.wait(2.5);
     for i in 0..50 {
-        liar.say(&mut bench, &quadrotor(true));
-        liar.say(&mut bench, &servo(33.0 + f64::from(i) * 0.04, [1500; 4]));
+        liar.send(&mut bench, &quadrotor(true));
+        liar.send(&mut bench, &servo(33.0 + f64::from(i) * 0.04, [1500; 4]));
         bench.wait(0.04);
     }
     let changed = bench.count(
@@ -155,12 +155,12 @@ fn another_system_is_followed_only_long_after_the_vehicle_fell_silent() {
     bench.hover(10.0, 10.0, 1500);
     let mut other = Peer::new(2, 7, 1);
     for _ in 0..28 {
-        other.say(&mut bench, &quadrotor(false));
+        other.send(&mut bench, &quadrotor(false));
         bench.wait(1.0);
     }
     assert_eq!(bench.followed(), Some(1));
     for _ in 0..5 {
-        other.say(&mut bench, &quadrotor(false));
+        other.send(&mut bench, &quadrotor(false));
         bench.wait(1.0);
     }
     assert_eq!(bench.followed(), Some(7));
@@ -187,7 +187,7 @@ fn parameters_of_other_components_are_ignored() {
     bench.beat(false);
     let mut gimbal = Peer::new(1, 1, 154);
     for _ in 0..3 {
-        gimbal.say(
+        gimbal.send(
             &mut bench,
             &MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
                 param_value: 1900.0,
@@ -239,14 +239,14 @@ fn a_clock_that_jumps_once_is_not_a_reboot() {
 }
 
 fn watch_beat(age_s: f64) -> MavMessage {
-    voice::heartbeat(age_s)
+    messages::heartbeat(age_s)
 }
 
 fn risk() -> MavMessage {
     MavMessage::NAMED_VALUE_FLOAT(NAMED_VALUE_FLOAT_DATA {
         time_boot_ms: 1,
         value: 20.0,
-        name: voice::RISK.into(),
+        name: messages::RISK.into(),
     })
 }
 
@@ -254,7 +254,7 @@ fn warned(bench: &Bench<'_>) -> usize {
     bench.count_sent(|message| matches!(message, MavMessage::STATUSTEXT(_)))
 }
 
-fn said_by(bench: &Bench<'_>) -> usize {
+fn count_sent(bench: &Bench<'_>) -> usize {
     bench.count_sent(|message| {
         matches!(
             message,
@@ -271,27 +271,27 @@ fn the_older_of_two_watches_sends_and_the_younger_takes_over() {
     bench.beat(false);
     bench.all_parameters();
     let mut elder = Peer::new(4, 1, 191);
-    elder.say(&mut bench, &watch_beat(60.0));
-    let before = said_by(&bench);
+    elder.send(&mut bench, &watch_beat(60.0));
+    let before = count_sent(&bench);
     for i in 0..10_u32 {
-        elder.say(&mut bench, &watch_beat(61.0 + f64::from(i)));
-        elder.say(&mut bench, &risk());
+        elder.send(&mut bench, &watch_beat(61.0 + f64::from(i)));
+        elder.send(&mut bench, &risk());
         bench.hover(10.0 + f64::from(i), 1.0, 1950);
     }
     assert!(bench.count(|event| matches!(event, Event::Level { .. })) > 0);
-    assert_eq!(said_by(&bench), before, "it sends no values");
+    assert_eq!(count_sent(&bench), before, "it sends no values");
     assert!(warned(&bench) > 0, "the older one did not warn");
     let reported = |component: Option<u8>, is_sending: bool| move |event: &Event| matches!(event, Event::AnotherWatch { component: c, is_sending: s, .. } if (*c, *s) == (component, is_sending));
     assert_eq!(bench.count(reported(Some(191), false)), 1);
     bench.hover(20.0, 10.0, 1950);
     assert_eq!(bench.count(reported(None, true)), 1);
-    assert!(said_by(&bench) > before + 10);
+    assert!(count_sent(&bench) > before + 10);
 
     // Another watch with a shorter running time does not silence this one.
-    elder.say(&mut bench, &watch_beat(1.0));
-    let before = said_by(&bench);
+    elder.send(&mut bench, &watch_beat(1.0));
+    let before = count_sent(&bench);
     bench.hover(30.0, 4.0, 1950);
-    assert!(said_by(&bench) > before + 3);
+    assert!(count_sent(&bench) > before + 3);
 }
 
 #[test]
@@ -306,7 +306,7 @@ fn a_risk_sent_by_the_autopilot_is_repeated_only_on_request() {
             bench.take_message(&risk());
             bench.hover(10.0 + f64::from(i), 1.0, 1950);
         }
-        assert_eq!(said_by(&bench) > 0, insists);
+        assert_eq!(count_sent(&bench) > 0, insists);
         assert!(warned(&bench) > 0, "a warning is sent in any case");
         assert_eq!(bench.count(|event| matches!(event, Event::AnotherWatch { component: Some(1), is_sending, .. } if *is_sending == insists)), 1);
     }

@@ -20,15 +20,17 @@ use crate::{
 
 /// The budget of a search: the number of evaluated rules and terms, which take some tens of milliseconds.
 const MAX_STEPS: usize = 3_000_000;
-/// The number of even steps across an input's range that are tried, in addition to the points of its terms.
+/// The number of equal steps into which an input's range is divided; their ends are tried, in addition to the points of
+/// the terms.
 const STEPS: u32 = 32;
 
 /// The highest risk that an input reaches alone.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(rename = "OutvotedInput"))]
 #[non_exhaustive]
-pub struct OutvotedInput {
+pub struct InputRisk {
     /// The input.
     pub input: String,
     /// The value at which the risk is highest.
@@ -55,18 +57,18 @@ pub struct OutvotedInput {
 /// ```
 /// use flagred::{check, shipped, verdict::Level};
 ///
-/// let alone = check::alone(&shipped::flagred());
-/// let at_limit = alone.iter().find(|one| one.input == "at_limit").ok_or("no such input")?;
+/// let risks = check::risks_of_single_inputs(&shipped::flagred());
+/// let at_limit = risks.iter().find(|one| one.input == "at_limit").ok_or("no such input")?;
 /// assert_eq!((at_limit.term.as_deref(), at_limit.level), (Some("much"), Level::Fail));
 /// # Ok::<(), &str>(())
 /// ```
-pub fn alone(estimator: &Estimator) -> Vec<OutvotedInput> {
-    let mut worst: Vec<Option<OutvotedInput>> = Vec::new();
+pub fn risks_of_single_inputs(estimator: &Estimator) -> Vec<InputRisk> {
+    let mut worst: Vec<Option<InputRisk>> = Vec::new();
     for risk in core::iter::once(estimator).chain(estimator.others()) {
         let found = of_risk(risk);
         worst.resize(found.len(), None);
         for (worst, found) in worst.iter_mut().zip(found) {
-            let is_worse = |one: &OutvotedInput, known: &OutvotedInput| {
+            let is_worse = |one: &InputRisk, known: &InputRisk| {
                 (one.level, one.risk_pct) > (known.level, known.risk_pct)
             };
             let (one, known) = (found.as_ref(), worst.as_ref());
@@ -84,11 +86,11 @@ pub fn alone(estimator: &Estimator) -> Vec<OutvotedInput> {
 /// many. A problem that another signal measures may not show in the motors at all.
 pub(super) fn outvoted(estimator: &Estimator, at: &ValuePositions) -> Vec<Diagnostic> {
     let profile = estimator.profile();
-    let alone = alone(estimator);
-    let is_other = |input: &&ProfileInput| !input.source.signal.is_made_of_motors();
+    let risks = risks_of_single_inputs(estimator);
+    let is_other = |input: &&ProfileInput| !input.source.signal.is_computed_from_commands();
     let others = profile.inputs.iter().filter(is_other);
     let found = others.filter_map(|input| {
-        let one = alone.iter().find(|one| one.input == input.name)?;
+        let one = risks.iter().find(|one| one.input == input.name)?;
         (one.level < Level::Warn).then(|| {
             let place = at.of(&["inputs", &input.name]);
             Diagnostic::warning(OUTVOTED, place, message(one, profile)).help(help(one))
@@ -97,7 +99,7 @@ pub(super) fn outvoted(estimator: &Estimator, at: &ValuePositions) -> Vec<Diagno
     found.collect()
 }
 
-fn message(one: &OutvotedInput, profile: &Profile) -> String {
+fn message(one: &InputRisk, profile: &Profile) -> String {
     let mut others = profile.other_risks.iter();
     let other = others.find(|risk| risk.output == one.risk_output);
     let warn = other.map_or(profile.verdict.warn, |risk| risk.warn);
@@ -117,7 +119,7 @@ fn message(one: &OutvotedInput, profile: &Profile) -> String {
     }
 }
 
-impl OutvotedInput {
+impl InputRisk {
     /// Whether the input raises the risk by at least one percentage point.
     fn raises_risk(&self) -> bool {
         self.risk_pct - self.calm_risk_pct >= 1.0
@@ -125,7 +127,7 @@ impl OutvotedInput {
 }
 
 /// Formats a value with its term: `0 (empty)`.
-fn at(one: &OutvotedInput) -> String {
+fn at(one: &InputRisk) -> String {
     let value = shown_value(one.value);
     match &one.term {
         Some(term) => format!("{value} (`{term}`)"),
@@ -133,7 +135,7 @@ fn at(one: &OutvotedInput) -> String {
     }
 }
 
-fn help(one: &OutvotedInput) -> String {
+fn help(one: &InputRisk) -> String {
     let term = one.term.as_deref().unwrap_or("TERM");
     let input = &one.input;
     let accept = format!("`allow: [{{finding: outvoted, of: {input}, because: ...}}]`");
@@ -154,7 +156,7 @@ fn shown_value(x: f64) -> String {
 }
 
 /// The highest risk of each input of the profile, for one risk output.
-fn of_risk(estimator: &Estimator) -> Vec<Option<OutvotedInput>> {
+fn of_risk(estimator: &Estimator) -> Vec<Option<InputRisk>> {
     let profile = estimator.profile();
     let model = estimator.model();
     let variables = profile.inputs.iter().map(|input| {
@@ -172,11 +174,13 @@ fn of_risk(estimator: &Estimator) -> Vec<Option<OutvotedInput>> {
         |variable| variable.low / 2.0 + variable.high / 2.0,
         |variable| variable.high,
     ];
-    let start = |place: fn(&Variable) -> f64| -> Vec<f64> {
-        let places = variables.iter().map(|variable| variable.map_or(0.0, place));
-        places.collect()
+    let start = |position: fn(&Variable) -> f64| -> Vec<f64> {
+        let values = variables
+            .iter()
+            .map(|variable| variable.map_or(0.0, position));
+        values.collect()
     };
-    let calm = starts.map(|place| search.lowest(start(place), &values, None));
+    let calm = starts.map(|position| search.lowest(start(position), &values, None));
     let calm = calm
         .into_iter()
         .flatten()
@@ -200,7 +204,7 @@ fn of_risk(estimator: &Estimator) -> Vec<Option<OutvotedInput>> {
         let (value, _) = highest?;
         *point.get_mut(index)? = value;
         let (risk_pct, _) = search.lowest(point, all, Some(index))?;
-        Some(OutvotedInput {
+        Some(InputRisk {
             input: profile.inputs.get(index)?.name.clone(),
             value,
             term: term(variable.as_ref()?, value),
@@ -273,31 +277,31 @@ impl<'e> OutvotedSearch<'e> {
     }
 }
 
-/// The values of an input to try: even steps of its range, and the points of its terms within it.
+/// The values of an input to try: evenly spaced values over its range, and the points of its terms within it.
 fn values(variable: &Variable) -> Vec<f64> {
     /// The maximum number of points; further points are thinned.
-    const MOST: usize = 200;
+    const MAX_POINTS: usize = 200;
     let (low, high) = (variable.low, variable.high);
     let even = (0..=STEPS).map(|i| {
         let part = f64::from(i) / f64::from(STEPS);
         low * (1.0 - part) + high * part
     });
-    let mut places: Vec<f64> = Vec::new();
+    let mut from_terms: Vec<f64> = Vec::new();
     for term in &variable.terms {
         match &term.membership_function {
             MembershipFunction::Piecewise { points } => {
-                places.extend(points.iter().map(|point| point.0));
+                from_terms.extend(points.iter().map(|point| point.0));
             }
             shape => {
                 let parameters = shape.parameters().into_iter();
                 let positions = parameters.filter(|(_, role, _)| *role != Role::Positive);
-                places.extend(positions.map(|(_, _, x)| x));
+                from_terms.extend(positions.map(|(_, _, x)| x));
             }
         }
     }
-    places.retain(|x| (low..=high).contains(x));
-    let step = places.len().div_ceil(MOST).max(1);
-    let mut values: Vec<f64> = places.into_iter().step_by(step).chain(even).collect();
+    from_terms.retain(|x| (low..=high).contains(x));
+    let step = from_terms.len().div_ceil(MAX_POINTS).max(1);
+    let mut values: Vec<f64> = from_terms.into_iter().step_by(step).chain(even).collect();
     values.sort_by(f64::total_cmp);
     values.dedup();
     values

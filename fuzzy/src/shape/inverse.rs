@@ -13,7 +13,7 @@ impl ShapeKind {
     /// Returns the value at which a monotone membership function takes the given degree in [0, 1], that is, the
     /// inverse of its formula. On a plateau, this is the end of the slope. A sigmoid reaches 0 and 1, and a concave
     /// shape reaches 0, only at infinity. NaN for shapes that are not monotone.
-    pub(crate) fn place(self, parameters: &[f64; 4], points: &[[f64; 2]], degree: f64) -> f64 {
+    pub(crate) fn inverse(self, parameters: &[f64; 4], points: &[[f64; 2]], degree: f64) -> f64 {
         let [a, b, ..] = *parameters;
         let along = |foot: f64, top: f64, part: f64| foot + (top - foot) * part;
         match self {
@@ -33,15 +33,15 @@ impl ShapeKind {
 
 #[cfg(feature = "alloc")]
 impl MembershipFunction {
-    /// Returns the value at which a monotone membership function takes the given degree: see [`ShapeKind::place`].
-    pub(crate) fn place(&self, degree: f64) -> f64 {
+    /// Returns the value at which a monotone membership function takes the given degree: see [`ShapeKind::inverse`].
+    pub(crate) fn inverse(&self, degree: f64) -> f64 {
         let (kind, parameters) = self.kind();
         match self {
             MembershipFunction::Piecewise { points } => {
                 let points: Vec<[f64; 2]> = points.iter().map(|(x, y)| [*x, *y]).collect();
-                kind.place(&parameters, &points, degree)
+                kind.inverse(&parameters, &points, degree)
             }
-            _ => kind.place(&parameters, &[], degree),
+            _ => kind.inverse(&parameters, &[], degree),
         }
     }
 
@@ -54,7 +54,7 @@ impl MembershipFunction {
                 degrees().next() != degrees().next_back()
                     && (degrees().is_sorted() || degrees().is_sorted_by(|a, b| a >= b))
             }
-            _ => !self.place(0.5).is_nan(),
+            _ => !self.inverse(0.5).is_nan(),
         }
     }
 }

@@ -15,7 +15,7 @@ use crate::{
 
 /// A signal of a log.
 #[derive(Debug, Serialize)]
-pub struct Offered<'a> {
+pub struct AvailableSignal<'a> {
     /// The name of the signal.
     pub name: &'a str,
     /// The unit of the values; empty if there is none or it is unknown.
@@ -25,18 +25,18 @@ pub struct Offered<'a> {
 }
 
 /// The signals of a log with at least one known value, in order of their names.
-pub fn signals(flight: &Flight) -> Vec<Offered<'_>> {
+pub fn signals(flight: &Flight) -> Vec<AvailableSignal<'_>> {
     let known = |signal: &Signal<'_>| signal.values.iter().any(|value| value.is_finite());
     let known = flight.signals().filter(known);
-    let mut offered: Vec<Offered<'_>> = known
-        .map(|signal| Offered {
+    let mut available: Vec<AvailableSignal<'_>> = known
+        .map(|signal| AvailableSignal {
             name: &signal.label.name,
             unit: unit(&signal),
             source: &signal.label.source,
         })
         .collect();
-    offered.sort_by_key(|signal| signal.name);
-    offered
+    available.sort_by_key(|signal| signal.name);
+    available
 }
 
 /// The unit of a signal in the usual notation, such as `m/s²` for `m/s2`; empty for the unit `1`.

@@ -4,7 +4,7 @@ use crate::Intervals;
 
 /// An event that changes the armed or in-air state.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Landing {
+pub(super) enum StateEvent {
     Armed,
     Disarmed,
     /// Left the ground.
@@ -12,7 +12,7 @@ pub(super) enum Landing {
     Landed,
 }
 
-impl Landing {
+impl StateEvent {
     /// The event with the given number in EV messages.
     pub(super) fn of(id: f64) -> Option<Self> {
         Some(match id as i64 {
@@ -28,11 +28,11 @@ impl Landing {
 /// Armed and in-air times from the events of the log. The in-air times are known only if the log contains take-offs or
 /// landings. A boot ends an armed time and an in-air time.
 pub(super) fn air_from_events(
-    events: &[(f64, Landing)],
+    events: &[(f64, StateEvent)],
     boots_s: &[f64],
     (first_s, last_s): (f64, f64),
 ) -> (Intervals, Option<Intervals>) {
-    let changes = |yes: Landing, no: &[Landing]| -> Vec<(f64, bool)> {
+    let changes = |yes: StateEvent, no: &[StateEvent]| -> Vec<(f64, bool)> {
         let mut changes: Vec<(f64, bool)> = events
             .iter()
             .filter_map(|&(t_s, event)| match event {
@@ -47,33 +47,36 @@ pub(super) fn air_from_events(
     };
     let first = events.first().map(|&(_, event)| event);
     let armed = Intervals::from_changes(
-        &changes(Landing::Armed, &[Landing::Disarmed]),
+        &changes(StateEvent::Armed, &[StateEvent::Disarmed]),
         // If the first event is about flying or about the end of a flight, the vehicle was armed before the log began.
-        first.is_some_and(|event| event != Landing::Armed),
+        first.is_some_and(|event| event != StateEvent::Armed),
         first_s,
         last_s,
         "EV 10 (armed) to EV 11 (disarmed), and ARM",
     );
     let in_air = Intervals::from_changes(
-        &changes(Landing::Left, &[Landing::Landed, Landing::Disarmed]),
-        first == Some(Landing::Landed),
+        &changes(
+            StateEvent::Left,
+            &[StateEvent::Landed, StateEvent::Disarmed],
+        ),
+        first == Some(StateEvent::Landed),
         first_s,
         last_s,
         "EV 28 (not landed) to EV 18 (land complete) or disarmed",
     );
     // Firmware before 3.1 logs arming, but not take-off.
-    let tells = |event| matches!(event, Landing::Left | Landing::Landed);
-    let reported = events.iter().any(|&(_, event)| tells(event));
-    (armed, reported.then_some(in_air))
+    let is_about_flying = |event| matches!(event, StateEvent::Left | StateEvent::Landed);
+    let is_known = events.iter().any(|&(_, event)| is_about_flying(event));
+    (armed, is_known.then_some(in_air))
 }
 
 /// The boots at which the vehicle was in the air according to the events before them.
-pub(super) fn boots_in_air(events: &[(f64, Landing)], boots_s: &[f64]) -> Vec<f64> {
+pub(super) fn boots_in_air(events: &[(f64, StateEvent)], boots_s: &[f64]) -> Vec<f64> {
     let is_flying = |boot_s: f64| {
         let before = events
             .iter()
-            .rfind(|(t_s, event)| *t_s <= boot_s && *event != Landing::Armed);
-        before.is_some_and(|(_, event)| *event == Landing::Left)
+            .rfind(|(t_s, event)| *t_s <= boot_s && *event != StateEvent::Armed);
+        before.is_some_and(|(_, event)| *event == StateEvent::Left)
     };
     boots_s
         .iter()

@@ -24,7 +24,7 @@ pub(crate) fn add(
     (term, span): (Term, TermSpans),
     part: &str,
 ) {
-    if !draft.has_room_for_term(variable, part) {
+    if !draft.allows_another_term(variable, part) {
         return;
     }
     if variable.terms.iter().any(|known| known.name == term.name) {

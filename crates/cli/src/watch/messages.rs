@@ -20,7 +20,7 @@ pub(crate) const RISK: &str = "FR_RISK";
 /// The name of the value with the elevated risk.
 pub(crate) const ELEVATED: &str = "FR_ELEV";
 /// The sender's system id until a vehicle is found: 255, which ground stations use.
-pub(crate) const NOBODY: u8 = 255;
+pub(crate) const DEFAULT_SYSTEM: u8 = 255;
 /// Maximum length of a STATUSTEXT.
 const TEXT: usize = 50;
 
@@ -93,7 +93,7 @@ pub(crate) fn topic(message: &MavMessage) -> Option<String> {
 }
 
 /// The text about a station that reduces the rate of the motor commands.
-pub(crate) fn slowed(rate_hz: f64, asker: Option<(u8, u8)>) -> String {
+pub(crate) fn slowed_text(rate_hz: f64, asker: Option<(u8, u8)>) -> String {
     match asker {
         Some((system, _)) => {
             format!("{PREFIX}station {system} slows motor data to {rate_hz:.0} Hz")
@@ -135,7 +135,11 @@ pub(crate) fn status(level: Level, text: &str) -> MavMessage {
 /// gusts`; if motors are near a limit, `FLAGRED: WARN risk 78 %, upper limit, motor 3`; or `FLAGRED: WARN motor 3
 /// weak: +24 %`. `finding` is the finding with its texts. If it is `None` although the level is above GOOD, the text
 /// states that the level stays: the motors have changed since the alarm was raised.
-pub(crate) fn say(level: Level, update: &Update, finding: Option<(&Finding, &Words)>) -> String {
+pub(crate) fn level_text(
+    level: Level,
+    update: &Update,
+    finding: Option<(&Finding, &Words)>,
+) -> String {
     if level > Level::Good && finding.is_none() {
         return format!("{PREFIX}{level} stays: motor balance is off");
     }
@@ -173,7 +177,7 @@ pub(crate) fn say(level: Level, update: &Update, finding: Option<(&Finding, &Wor
 }
 
 /// The text for a risk that becomes unknown during an alarm.
-pub(crate) fn unknown(last: Level) -> String {
+pub(crate) fn unknown_text(last: Level) -> String {
     format!("{PREFIX}risk unknown, last level {last}")
 }
 
