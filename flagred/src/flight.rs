@@ -13,7 +13,8 @@ use crate::{
 };
 
 mod assessment;
-pub use assessment::{Assessment, AssumedInput, Peak, Step, Summary};
+use assessment::UnknownTime;
+pub use assessment::{Assessment, AssumedInput, Peak, Step, Summary, UnknownRisk};
 
 mod finding;
 pub use finding::{Cause, Finding};
@@ -122,8 +123,8 @@ struct Flight {
     risk_times_s: f64,
     motor_samples: u64,
     saturated: u64,
-    /// The reasons why the risk was unknown, each with its total time in seconds.
-    unknown: Vec<(Unknown, f64)>,
+    /// The reasons why each risk was unknown.
+    unknown: Vec<UnknownTime>,
     losses: Losses,
     /// The indices of the inputs whose values were assumed, not measured, while the vehicle was in the air.
     assumed: Vec<usize>,
@@ -193,8 +194,10 @@ impl Assessor {
             }
         } else {
             let profile = self.monitor.estimator().profile();
-            let unknown_others = self.monitor.unknown_other_risks();
-            let unknown = update.risk.err().into_iter().chain(unknown_others);
+            let elsewhere = self.monitor.unknown_other_risks();
+            let elsewhere = elsewhere.map(|(risk, reason)| (risk + 1, reason));
+            let first = update.risk.err().map(|reason| (0, reason));
+            let unknown = first.into_iter().chain(elsewhere);
             self.flight.add(&update, sample, profile, unknown);
             if !sample.is_on_ground() {
                 self.keep_step(&update);
@@ -323,7 +326,7 @@ impl Assessor {
             return;
         };
         if let Ok(estimate) = update.risk {
-            UncertainPeak::keep(&mut flight.peaks, &self.monitor, estimate);
+            UncertainPeak::keep(&mut flight.peaks, &flight.findings, &self.monitor, estimate);
         }
         if update.t_s < flight.next_step_s {
             return;
@@ -377,13 +380,13 @@ impl Flight {
         }
     }
 
-    /// Adds a sample; `unknown` are the reasons why risks of the profile are unknown.
+    /// Adds a sample; `unknown` are the unknown risks, each with its index ([`UnknownTime::risk`]) and the reason.
     fn add(
         &mut self,
         update: &Update,
         sample: &Sample<'_>,
         profile: &Profile,
-        unknown: impl Iterator<Item = Unknown> + Clone,
+        unknown: impl Iterator<Item = (usize, Unknown)> + Clone,
     ) {
         let t_s = sample.t_s;
         let last = self.last.replace(PreviousSample {
@@ -416,15 +419,13 @@ impl Flight {
             self.motor_samples += 1;
             self.saturated += u64::from(margin(e) < SATURATED_MARGIN);
         }
-        self.losses.take_sample(unknown.clone(), t_s, flown_s);
+        let reasons = unknown.clone().map(|(_, reason)| reason);
+        self.losses.take_sample(reasons, t_s, flown_s);
         if unknown.clone().next().is_none() {
             self.summary.assessed_s += flown_s;
         }
-        for (index, reason) in unknown.clone().enumerate() {
-            let mut before = unknown.clone().take(index);
-            if !before.any(|other| is_same(&other, &reason)) {
-                self.add_unknown(reason, flown_s);
-            }
+        for (risk, reason) in unknown {
+            self.add_unknown(risk, reason, flown_s);
         }
         if let Ok(estimate) = update.risk {
             if estimate.filled_from.is_some() {
@@ -443,11 +444,15 @@ impl Flight {
         self.count_pending(t_s - quiet_s);
     }
 
-    fn add_unknown(&mut self, reason: Unknown, flown_s: f64) {
+    fn add_unknown(&mut self, risk: usize, reason: Unknown, flown_s: f64) {
         let mut known = self.unknown.iter_mut();
-        match known.find(|(known, _)| is_same(known, &reason)) {
-            Some((_, total_s)) => *total_s += flown_s,
-            None => self.unknown.push((reason, flown_s)),
+        match known.find(|known| known.risk == risk && is_same(&known.reason, &reason)) {
+            Some(known) => known.total_s += flown_s,
+            None => self.unknown.push(UnknownTime {
+                risk,
+                reason,
+                total_s: flown_s,
+            }),
         }
     }
 
@@ -561,7 +566,7 @@ impl Flight {
                 .map(|risk| risk.output.clone())
                 .collect(),
             assumed_inputs: AssumedInput::of(&self.assumed, profile),
-            unknown_risk: longest(&self.unknown).map(|(unknown, _)| unknown.explain(profile)),
+            unknown_risks: UnknownRisk::of(&self.unknown, profile),
             steps: self.steps,
             widened_step_s: self.widened_step_s,
         }
@@ -586,31 +591,32 @@ impl Flight {
                 })
             }
             (None, None) if knows_enough => Verdict::Known(Level::Good),
-            (None, None) => Verdict::NotAvailable(match longest(&self.unknown) {
-                Some((unknown, total_s)) => Reason::RiskUnknown {
-                    unknown: *unknown,
-                    explanation: match unknown {
-                        Unknown::OnGround => {
-                            "the motors idle for most of the time in the air".into()
-                        }
-                        _ if *total_s < WHOLE_SHARE * summary.in_air_s => format!(
-                            "{} for {:.0} % of the time in the air",
-                            unknown.explain(profile),
-                            100.0 * total_s / summary.in_air_s
-                        ),
-                        _ => unknown.explain(profile),
+            (None, None) => {
+                Verdict::NotAvailable(match UnknownTime::longest(self.unknown.iter()) {
+                    Some(UnknownTime {
+                        reason: unknown,
+                        total_s,
+                        ..
+                    }) => Reason::RiskUnknown {
+                        unknown: *unknown,
+                        explanation: match unknown {
+                            Unknown::OnGround => {
+                                "the motors idle for most of the time in the air".into()
+                            }
+                            _ if *total_s < WHOLE_SHARE * summary.in_air_s => format!(
+                                "{} for {:.0} % of the time in the air",
+                                unknown.explain(profile),
+                                100.0 * total_s / summary.in_air_s
+                            ),
+                            _ => unknown.explain(profile),
+                        },
+                        help: None,
                     },
-                    help: None,
-                },
-                None => Reason::NoSamples,
-            }),
+                    None => Reason::NoSamples,
+                })
+            }
         }
     }
-}
-
-/// The reason that applied for the longest time.
-fn longest(unknown: &[(Unknown, f64)]) -> Option<&(Unknown, f64)> {
-    unknown.iter().max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 state! {

@@ -294,10 +294,11 @@ impl Follower {
         self.alert.open().or_else(|| self.notices.open().copied())
     }
 
-    /// The open finding of the risk, with its values so far.
+    /// The beginning and the highest value of the open finding of the risk, or of one that may be opened: see
+    /// [`Alert::peak`].
     #[cfg(feature = "std")]
-    pub(crate) fn open_of_risk(&self) -> Option<Finding> {
-        self.alert.open()
+    pub(crate) fn peak_of_risk(&self) -> Option<(f64, f64)> {
+        self.alert.peak()
     }
 
     /// The worst open finding that is not about the risk, with its values so far: little reserve or an imbalance.

@@ -1,13 +1,14 @@
 //! Converts a flight log to samples: the only module that uses both `flightlog` and the monitor.
 
-use alloc::{vec, vec::Vec};
+use alloc::{string::ToString, vec, vec::Vec};
 
-use flagred_flightlog::{Flight, Gap};
+use flagred_flightlog::{Flight, Format, Gap};
 
 use crate::{
     estimator::Estimator,
     flight::{Assessment, Assessor, Reason, Verdict},
     monitor::{Craft, MonitorError, Sample, Unknown},
+    profile::Profile,
     verdict::Level,
 };
 
@@ -77,30 +78,22 @@ fn assess_by(
         assessor.set_in_air_s(in_air.duration_s());
     }
     let mut assessment = assessor.finish();
-    if let Verdict::NotAvailable(Reason::RiskUnknown { unknown, .. }) = &assessment.verdict
-        && let Unknown::NoValue { input } = unknown
-        && let Some(input) = profile.inputs.get(*input)
-        && let Some(signal) = input.source.signal.carried().find(|s| !carried.contains(s))
-    {
-        let signal = signal.into();
-        assessment.verdict = Verdict::NotAvailable(MonitorError::NoSignal { signal }.into());
+    let explain = |unknown: &Unknown| explained(unknown, flight, profile, &carried);
+    for risk in &mut assessment.unknown_risks {
+        if let Some(unknown) = numbered(risk.unknown, flight) {
+            risk.reason = unknown.explain(profile);
+        }
+        match explain(&risk.unknown) {
+            (Some(reason), _) => (risk.reason, risk.help) = (reason.to_string(), reason.help()),
+            (None, help) => risk.help = help,
+        }
     }
-    let reads_motors = |input: usize| {
-        let input = profile.inputs.get(input);
-        input.is_none_or(|input| input.source.signal.is_computed_from_commands())
-    };
-    let slow = gaps.iter().find(|gap| matches!(gap, Gap::TooSlow { .. }));
-    if let (Verdict::NotAvailable(Reason::RiskUnknown { unknown, help, .. }), Some(slow)) =
-        (&mut assessment.verdict, slow)
+    if let Verdict::NotAvailable(Reason::RiskUnknown { unknown, help, .. }) =
+        &mut assessment.verdict
     {
-        match unknown {
-            Unknown::TooFewSamples { .. } => *help = slow.help(),
-            // With at most two samples in a window, the sample rate is too low; the signal of the
-            // motors is not missing.
-            Unknown::NoValue { input } | Unknown::WarmingUp { input } if reads_motors(*input) => {
-                assessment.verdict = Verdict::NotAvailable(Reason::Log(slow.clone()));
-            }
-            _ => {}
+        match explain(unknown) {
+            (Some(reason), _) => assessment.verdict = Verdict::NotAvailable(reason),
+            (None, advice) => *help = advice,
         }
     }
     if let Verdict::NotAvailable(Reason::RiskUnknown {
@@ -133,6 +126,58 @@ fn assess_by(
         assessment.verdict = Verdict::NotAvailable(Reason::SetBackInAir { at_s });
     }
     assessment
+}
+
+/// The reason why a risk is unknown if the log is the cause, or else advice on how to know it.
+fn explained(
+    unknown: &Unknown,
+    flight: &Flight,
+    profile: &Profile,
+    carried: &[&str],
+) -> (Option<Reason>, Option<&'static str>) {
+    let (Unknown::NoValue { input }
+    | Unknown::WarmingUp { input }
+    | Unknown::TooFewSamples { input, .. }) = unknown
+    else {
+        return (None, None);
+    };
+    let source = profile.inputs.get(*input).map(|input| &input.source.signal);
+    let names = || source.iter().flat_map(|signal| signal.carried());
+    let gaps = flight.gaps();
+    let slow = gaps.iter().find(|gap| matches!(gap, Gap::TooSlow { .. }));
+    match (unknown, slow, names().next()) {
+        (Unknown::TooFewSamples { .. }, slow, _) => (None, slow.and_then(Gap::help)),
+        // With at most two samples in a window, the sample rate is too low; the signal of the motors is not missing.
+        (_, Some(slow), None) => (Some(Reason::Log(slow.clone())), None),
+        (Unknown::NoValue { .. }, _, Some(_)) => {
+            let is_sparse =
+                |name: &str| flight.signal(name).is_some_and(|signal| signal.is_sparse());
+            match names().find(|name| !carried.contains(name)) {
+                Some(signal) => {
+                    let signal = signal.into();
+                    (Some(MonitorError::NoSignal { signal }.into()), None)
+                }
+                None if flight.format == Format::Csv && names().any(is_sparse) => {
+                    (None, Some(SPARSE_HELP))
+                }
+                None => (None, Some(INSPECT_HELP)),
+            }
+        }
+        _ => (None, None),
+    }
+}
+
+const SPARSE_HELP: &str = "an empty cell is an unknown value: if the signal has fewer values than the table has rows, repeat its last value in each row";
+const INSPECT_HELP: &str = "`flagred inspect` shows how many values of a signal are known";
+
+/// A reason that names a motor, with the number of the motor, less 1, instead of its index.
+fn numbered(mut unknown: Unknown, flight: &Flight) -> Option<Unknown> {
+    let (Unknown::NoCommand { motor } | Unknown::CommandOutside { motor, .. }) = &mut unknown
+    else {
+        return None;
+    };
+    *motor = usize::from(flight.motors.get(*motor)?.number).checked_sub(1)?;
+    Some(unknown)
 }
 
 /// Whether a reboot in the air may hide a worse verdict: the verdict is GOOD, or NA for a reason in the observed part

@@ -331,9 +331,10 @@ impl Monitor {
         Some(all)
     }
 
-    /// The open finding of the first risk, with its values so far.
-    pub(crate) fn open_of_risk(&self) -> Option<Finding> {
-        self.follower.open_of_risk()
+    /// The beginning in seconds and the highest value in % of the open finding of the first risk, or of one that begins
+    /// if a threshold stays reached.
+    pub(crate) fn peak_of_risk(&self) -> Option<(f64, f64)> {
+        self.follower.peak_of_risk()
     }
 
     /// The indices in the profile of the inputs whose values are assumed after the latest sample: inputs with
@@ -372,9 +373,11 @@ impl Monitor {
         &self.ended_other_risks
     }
 
-    /// The reasons why other risks are unknown after the latest sample, one for each unknown risk.
-    pub fn unknown_other_risks(&self) -> impl Iterator<Item = Unknown> + Clone {
-        self.others.iter().filter_map(|other| other.unknown)
+    /// The other risks that are unknown after the latest sample: the index of each in [`Profile::other_risks`], and the
+    /// reason.
+    pub fn unknown_other_risks(&self) -> impl Iterator<Item = (usize, Unknown)> + Clone {
+        let others = self.others.iter().enumerate();
+        others.filter_map(|(risk, other)| Some((risk, other.unknown?)))
     }
 
     /// The other risks after the latest sample in %, in the order of [`Profile::other_risks`]; NaN is unknown.

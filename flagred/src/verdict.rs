@@ -99,7 +99,7 @@ impl core::fmt::Display for Measure {
             Measure::Imbalance => "imbalance",
             Measure::PairImbalance => "pair imbalance",
             Measure::WeakMotor => "weak motor",
-            Measure::IdleInAir => "idle in the air",
+            Measure::IdleInAir => "motors idle in the air",
         })
     }
 }
@@ -264,9 +264,9 @@ impl Default for VerdictSettings {
 pub struct Finding {
     /// The worst level that was reached.
     pub severity: Level,
-    /// The time at which the level was first reached, in seconds.
+    /// The time at which a level was first reached, in seconds.
     pub from_s: f64,
-    /// The time at which the level was first raised, in seconds: when it had been reached for the `after_s` of the
+    /// The time at which a level was first raised, in seconds: when it had been reached for the `after_s` of the
     /// level.
     pub raised_s: f64,
     /// The time at which the level was raised to FAIL, in seconds; `None` if it was not.

@@ -265,7 +265,7 @@ fn an_empty_battery_determines_the_risk_of_the_shipped_profile() {
     // The battery runs empty during the flight.
     let (_, reported) = assess(&|t_s| Some((80.0 - 2.0 * t_s).max(0.0)));
     assert!(
-        reported.starts_with("FAIL") && reported.contains("The battery fell to "),
+        reported.starts_with("FAIL") && reported.contains("The battery was down to "),
         "{reported}"
     );
     // An unknown level never counts as GOOD.
@@ -382,18 +382,32 @@ fn each_risk_needs_only_the_inputs_that_its_rules_read() {
     };
     let is_known = |from_s: f64| move |t_s: f64| (t_s < from_s).then_some(80.0);
 
-    // The motors cause FAIL, whatever is known of the battery.
+    // The motors cause FAIL, whatever is known of the battery; a note reports that its risk is unknown.
     let without = |log: String| log.replace("battery_remaining_pct", "x");
-    for log in [
-        flight(failing, |_| None),
-        flight(failing, is_known(5.0)),
-        without(flight(failing, |_| Some(80.0))),
+    for (log, unknown) in [
+        (
+            flight(failing, |_| None),
+            "the whole time: the signal of input `battery` has no known value",
+        ),
+        (
+            flight(failing, is_known(5.0)),
+            "% of the time: the signal of input `battery` has no known value",
+        ),
+        (
+            without(flight(failing, |_| Some(80.0))),
+            "the whole time: the profile needs the signal `battery_remaining_pct`, which the flight does not contain",
+        ),
     ] {
         let (code, reported) = assess(log);
         assert_eq!(code, Some(1), "{reported}");
         assert!(reported.starts_with("FAIL"), "{reported}");
-        let reported = reported.replace("(not shown: battery_risk)", "");
-        assert!(!reported.contains("battery_risk"), "{reported}");
+        let note = reported
+            .lines()
+            .find(|line| line.contains("`battery_risk` is unknown for "));
+        assert!(
+            note.is_some_and(|note| note.contains(unknown)),
+            "{reported}"
+        );
     }
     // Calm motors are not enough for GOOD, and the reason is the battery.
     for (log, why) in [
@@ -425,6 +439,76 @@ fn each_risk_needs_only_the_inputs_that_its_rules_read() {
     assert_eq!(code, Some(3), "{reported}");
     assert!(
         reported.starts_with("NA") && reported.contains("motor 3"),
+        "{reported}"
+    );
+}
+
+/// The motors cause WARN or FAIL, so only a note can report that the battery was not assessed.
+#[test]
+fn a_risk_without_its_signal_is_named_beside_the_findings_of_another_risk() {
+    let folder = Folder::new();
+    let failing = |t_s: f64| match t_s {
+        20.0..40.0 => [1.0, 0.0, 1.0, 0.0].map(Some),
+        _ => calm(t_s),
+    };
+    let log = flight(failing, |_| Some(80.0)).replace("battery_remaining_pct", "x");
+    let log = folder.file("flight.csv", log);
+    let with =
+        |more: &[&str]| run(&[&["assess", "--profile", "flagred-battery", &log], more].concat()).1;
+    let missing =
+        "the profile needs the signal `battery_remaining_pct`, which the flight does not contain";
+    let note = format!("`battery_risk` is unknown for the whole time: {missing}");
+    for more in [&[][..], &["-v"], &["--html", "-"], &[STEADY]] {
+        let reported = with(more);
+        assert!(reported.contains(&note), "{more:?}: {reported}");
+    }
+    let document: Value = serde_json::from_str(&with(&["--json"])).unwrap();
+    let errors = schema::errors(&schema::schema("assess"), &document);
+    assert_eq!(errors, Vec::<String>::new());
+    let unknown = &document["unknown_risks"];
+    let of_battery = unknown.as_array().unwrap().iter();
+    let of_battery: Vec<&Value> = of_battery
+        .filter(|risk| risk["output"] == "battery_risk")
+        .collect();
+    assert_eq!(of_battery.len(), 1, "{unknown}");
+    assert_eq!(of_battery[0]["reason"], missing);
+    let in_air_s = document["summary"]["in_air_s"].as_f64().unwrap();
+    assert_eq!(
+        of_battery[0]["unknown_s"].as_f64().unwrap().round(),
+        in_air_s.round()
+    );
+}
+
+/// The battery level is in one row of 25.
+#[test]
+fn a_slow_signal_with_empty_cells_is_unknown_and_the_help_names_the_remedy() {
+    let folder = Folder::new();
+    let sparse = hover(|t_s| ((t_s / 0.04).round() % 25.0 == 0.0).then_some(80.0));
+    let log = folder.file("flight.csv", sparse);
+    let (code, reported, _) = run(&["assess", "--profile", "flagred-battery", &log]);
+    assert_eq!(code, Some(3), "{reported}");
+    assert!(
+        reported.contains("the signal of input `battery` has no known value"),
+        "{reported}"
+    );
+    assert!(
+        reported.contains("help: an empty cell is an unknown value: if the signal"),
+        "{reported}"
+    );
+    let (_, contents, _) = run(&["inspect", &log]);
+    let signal = contents
+        .lines()
+        .find(|line| line.contains("battery_remaining_pct"));
+    let signal = signal.unwrap();
+    assert!(
+        signal.contains("1.0 Hz") && signal.contains("more are unknown"),
+        "{signal}"
+    );
+    // A lost sensor is another case.
+    let log = folder.file("flight.csv", hover(|t_s| (t_s < 5.0).then_some(80.0)));
+    let (_, reported, _) = run(&["assess", "--profile", "flagred-battery", &log]);
+    assert!(
+        reported.contains("help: `flagred inspect` shows how many values"),
         "{reported}"
     );
 }

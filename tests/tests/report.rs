@@ -254,6 +254,59 @@ fn the_most_severe_finding_is_on_top_and_scales_have_units() {
     }
 }
 
+/// The table lists the rule that a finding names although this rule was never dominant.
+#[test]
+fn the_rules_of_findings_are_listed() {
+    let folder = Folder::new();
+    let log = folder.file("log.csv", saturating_log());
+    folder.file(
+        "rules.yaml",
+        "fuzzy: 1\nname: two\ninputs: {margin: {range: [0, 0.5], partition: {low: 0.1, high: 0.3}}}\n\
+         outputs: {risk: {range: [0, 100], terms: {none: {constant: 0}, some: {constant: 50}, all: {constant: 100}}, defuzzifier: weighted_average}}\n\
+         rules: [IF margin IS any THEN risk IS some, IF margin IS low THEN risk IS all WITH 0.9, IF margin IS high THEN risk IS none]\n",
+    );
+    let profile = folder.file(
+        "profile.yaml",
+        "flagred: 1\nname: two\nrules: rules.yaml\ninputs: {margin: {mean: motor_margin}}\n",
+    );
+    let html = report(&[&log, "--profile", &profile], &folder);
+    assert!(html.contains(", rule 2"), "the cause is rule 2");
+    let table = html.split("<th>Rule</th>").nth(1).unwrap();
+    let (table, after) = table.split_once("</table>").unwrap();
+    assert!(
+        table.contains("<td class=\"n\">2</td><td>IF margin IS low THEN"),
+        "{table}"
+    );
+    assert!(table.contains("never "), "{table}");
+    assert!(after.contains("The others in the table are rules that findings name."));
+}
+
+#[test]
+fn motors_that_idle_in_the_air_are_reported_without_contradictions() {
+    let folder = Folder::new();
+    let mut log = String::from("t_s,motor1,motor2,motor3,motor4,in_air\n");
+    for i in 0..3000 {
+        let command = if i < 2000 { 0.5 } else { 0.0 };
+        log += &format!("{:.2}", f64::from(i) * 0.02);
+        log += &format!(",{command}").repeat(4);
+        log += ",1\n";
+    }
+    let log = folder.file("log.csv", log);
+    let output = assess(&[&log], &["-v"]);
+    let reported = String::from_utf8_lossy(&output.stdout);
+    for said in [
+        "`risk` is unknown for 6 % of the time: the motors idled",
+        "FAIL 43.0 to 60.0 s: The motors had idled for 3 s while the autopilot reported",
+        "motors idle in the air, WARN at 43.2 s, FAIL at 43.3 s",
+    ] {
+        assert!(reported.contains(said), "no `{said}`: {reported}");
+    }
+    assert!(
+        !reported.contains("on the ground") && !reported.contains("over 80 %"),
+        "{reported}"
+    );
+}
+
 #[test]
 fn several_flights_are_compared_on_one_scale() {
     let folder = Folder::new();

@@ -166,6 +166,7 @@ pub(crate) fn json_text(assessed: &Assessment, context: FindingContext<'_>) -> S
         "findings_left_out": assessed.findings_left_out,
         "summary": assessed.summary,
         "assumed_inputs": assessed.assumed_inputs,
+        "unknown_risks": assessed.unknown_risks,
         "widened_step_s": assessed.widened_step_s,
     })
     .to_string()

@@ -150,6 +150,8 @@ export interface FlightDocument {
   summary: Summary;
   /** The inputs whose values were assumed because their signals are missing from the log. */
   assumed_inputs: AssumedInput[];
+  /** The risks of the profile that were unknown for some time in the air. */
+  unknown_risks: UnknownRisk[];
   /** The risk over time. The npm package can leave it out; `flagred assess` never does. */
   steps?: Step[];
   /** The distance between the steps in seconds, if it is larger than requested because at most 250,000 steps are kept. */
@@ -160,9 +162,9 @@ export interface FlightDocument {
 export interface FlightFinding {
   /** The worst level that was reached. */
   severity: Level;
-  /** The time at which the level was first reached, in seconds. */
+  /** The time at which a level was first reached, in seconds. */
   from_s: number;
-  /** The time at which the level was first raised, in seconds: `after_s` of the level after it was first reached. */
+  /** The time at which a level was first raised, in seconds: when it had been reached for the `after_s` of the level. */
   raised_s: number;
   /** The time at which the level was raised to FAIL, in seconds; null if it was not. */
   failed_s: number | null;
@@ -262,7 +264,7 @@ export interface Moment {
   filled_from: number | null;
   /** Whether an input was outside its range. */
   clamped: boolean;
-  /** The inputs with the degrees of their terms; empty if one is unknown. */
+  /** The inputs with the degrees of their terms; empty if an input that the risk depends on is unknown. */
   inputs: ExplainedInput[];
   /** The units of the inputs, by name; inputs without a unit are omitted. */
   units: Record<string, string>;
@@ -286,7 +288,7 @@ export interface MotorFinding {
   number: number;
   /** The number of a second motor that may be the cause instead, if the commands do not show which of the two. */
   or_number: number | null;
-  /** The nearest limit. For an imbalance, whether the motor is below or above its share earlier in the flight. */
+  /** The nearest limit. For an imbalance, `Lower` if the command of the motor is below its share earlier in the flight or below the opposite motor, `Upper` if it is above. */
   side: Side;
   /** The mean margin of the motor. */
   margin_mean: number;
@@ -460,7 +462,7 @@ export interface Step {
   judged: boolean;
   /** The inputs of the rule set by their names. */
   inputs: Record<string, number | null>;
-  /** The other risks of the profile in %, by the names of their outputs. Only with such risks. */
+  /** The other risks of the profile in %, by the names of their outputs. Left out if there are no other risks. */
   other_risks?: Record<string, number | null>;
 }
 
@@ -488,6 +490,18 @@ export interface Threshold {
   risk_pct: number | null;
   /** The threshold on the elevated risk, in %. */
   elevated_risk_pct: number | null;
+}
+
+/** A risk that was unknown for some time in the air. */
+export interface UnknownRisk {
+  /** The output of the rule set that is this risk. */
+  output: string;
+  /** The time in the air for which the risk was unknown, in seconds. */
+  unknown_s: number;
+  /** Why it was unknown; of several reasons, the one that applied longest. */
+  reason: string;
+  /** Advice on how to know it in the next flight, if there is any. */
+  help: string | null;
 }
 
 export interface Vehicle {
@@ -520,7 +534,7 @@ export interface VerdictSettings {
   warn: LevelSettings;
   /** The conditions for FAIL. */
   fail: LevelSettings;
-  /** A level is cleared when nothing has held it for this time, in seconds, and is replaced by the level that is still held. */
+  /** A level is cleared when no threshold has held it for this time, in seconds. It is replaced by the level that is still held. */
   clear_after_s: number;
   /** In this time after take-off, in seconds, only FAIL is raised; WARN does not count as reached. */
   quiet_after_take_off_s: number;

@@ -132,9 +132,29 @@ impl<'a> Signal<'a> {
         }
     }
 
-    /// The sample rate in Hz, ignoring pauses; `None` with fewer than two samples.
+    /// The number of known values.
+    pub fn known(&self) -> usize {
+        self.values.iter().filter(|value| value.is_finite()).count()
+    }
+
+    /// The rate of the known values in Hz, ignoring pauses; `None` if fewer than two values are known.
     pub fn rate_hz(&self) -> Option<f64> {
-        rate_hz(self.t_s)
+        let known = self.t_s.iter().zip(self.values);
+        let known = known.filter(|(_, value)| value.is_finite());
+        rate_hz(&known.map(|(t_s, _)| *t_s).collect::<Vec<f64>>())
+    }
+
+    /// Whether values are unknown between known ones again and again, as in a table whose rows are more frequent than
+    /// the values.
+    pub fn is_sparse(&self) -> bool {
+        let is_known = self.values.iter().map(|value| value.is_finite());
+        let known = is_known.clone().skip_while(|known| !known);
+        let again = known
+            .clone()
+            .skip(1)
+            .zip(known)
+            .filter(|(now, before)| *now && !before);
+        again.count() > 1
     }
 }
 
@@ -290,6 +310,32 @@ mod tests {
         ] {
             assert_eq!(signal.at(t), expected, "at {t}");
             assert_eq!(hold.at(t), expected, "hold at {t}");
+        }
+    }
+
+    #[test]
+    fn unknown_values_do_not_count_in_the_rate() {
+        let label = Label {
+            name: "x".into(),
+            unit: String::new(),
+            source: "test".into(),
+        };
+        let t_s: Vec<f64> = (0..50).map(|i| f64::from(i) * 0.1).collect();
+        for (is_known, known, rate_hz, is_sparse) in [
+            ((|_| true) as fn(usize) -> bool, 50, 10.0, false),
+            (|i| i % 10 == 0, 5, 1.0, true),
+            (|i| i < 10, 10, 10.0, false),
+            (|i| !(20..22).contains(&i), 48, 470.0 / 49.0, false),
+        ] {
+            let value = |i| if is_known(i) { 1.0 } else { f64::NAN };
+            let values: Vec<f64> = (0..50).map(value).collect();
+            let signal = Signal {
+                label: &label,
+                t_s: &t_s,
+                values: &values,
+            };
+            assert_eq!((signal.known(), signal.is_sparse()), (known, is_sparse));
+            approx::assert_abs_diff_eq!(signal.rate_hz().unwrap(), rate_hz, epsilon = 1e-9);
         }
     }
 

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use flagred::{
     estimator::Estimator,
-    flight::{Assessment, AssumedInput, Finding, Steps, Summary, Verdict, Words},
+    flight::{Assessment, AssumedInput, Finding, Steps, Summary, UnknownRisk, Verdict, Words},
     profile::Reliability,
     verdict::VerdictSettings,
 };
@@ -39,6 +39,8 @@ pub struct Document<'a> {
     summary: &'a Summary,
     /// The inputs whose values were assumed because their signals are missing from the log.
     assumed_inputs: &'a [AssumedInput],
+    /// The risks of the profile that were unknown for some time in the air.
+    unknown_risks: &'a [UnknownRisk],
     /// The risk over time. The npm package can leave it out; `flagred assess` never does.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Steps<'_>"))]
@@ -184,6 +186,7 @@ pub fn document<'a>(
         findings_left_out: assessed.findings_left_out,
         summary: &assessed.summary,
         assumed_inputs: &assessed.assumed_inputs,
+        unknown_risks: &assessed.unknown_risks,
         steps: Some(assessed.steps_by_name()),
         widened_step_s: assessed.widened_step_s,
     }

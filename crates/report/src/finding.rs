@@ -2,11 +2,11 @@
 
 use flagred::{
     estimator::Estimator,
-    flight::{Cause, Finding, Words},
+    flight::{Assessment, Cause, Finding, Peak, Step, Words},
     verdict::Measure,
 };
 use flagred_flightlog::{Flight, Motor};
-use fuzzy::drawing::number;
+use fuzzy::{drawing::number, model::Variable};
 
 use crate::{clock::Clock, names::words_of};
 
@@ -74,10 +74,7 @@ impl Line<'_> {
     /// The time of the finding, or of the worst of several.
     pub(crate) fn when(&self, clock: Clock) -> String {
         let Line { worst, count } = self;
-        let worst_at = match worst.is_of_risk() {
-            true => clock.span(worst.from_s, worst.to_s),
-            false => format!("from {}", clock.at(worst.from_s)),
-        };
+        let worst_at = clock.span(worst.from_s, worst.to_s);
         match count {
             1 => worst_at,
             count => format!("{count} times, worst {worst_at}"),
@@ -91,8 +88,7 @@ impl<'a> FindingContext<'a> {
         numbered(finding, self.motors).words(self.estimator)
     }
 
-    /// A line for all findings with one cause: `3 times, worst 12.0 to 14.5 s: ...`. A finding that is not about the
-    /// risk lasts until landing, so the line contains only its start.
+    /// A line for all findings with one cause: `3 times, worst 12.0 to 14.5 s: ...`.
     pub fn line(&self, line: &Line<'_>) -> String {
         format!("{}: {}", line.when(Clock::Log), self.words(line.worst).text)
     }
@@ -114,27 +110,20 @@ impl<'a> FindingContext<'a> {
         if let Some(cause) = &finding.cause {
             let value = number(cause.value, 3);
             let input = words_of(&cause.input);
+            let variable = self.input(cause);
             parts.push(format!(
-                "{input} {}: {value}, rule {}",
+                "{input} {}: {value}{}, rule {}",
                 cause.term,
+                variable.and_then(scale).unwrap_or_default(),
                 cause.rule + 1
             ));
-            parts.extend(self.description(cause).map(str::to_owned));
+            parts.extend(variable.and_then(|variable| variable.description.clone()));
         }
-        let mut raised = format!(
-            "{} over {} %, {} at {}",
-            finding.measure,
-            number(finding.threshold_pct, 2),
-            finding.failed_s.map_or("raised", |_| "WARN"),
-            clock.at(finding.raised_s)
-        );
-        if finding.measure == Measure::Reserve {
-            raised = raised.replace("over", "under");
-        }
-        if let Some(failed_s) = finding.failed_s {
-            raised += &format!(", FAIL at {}", clock.at(failed_s));
-        }
-        parts.push(raised);
+        parts.push(format!(
+            "{}, {}",
+            passed(finding),
+            raised(finding, |t_s| clock.at(t_s))
+        ));
         parts.extend(finding.uncertainty());
         if let (Some(motor), Some(found)) = (self.motor(finding), &finding.motor) {
             parts.push(match finding.is_of_risk() {
@@ -155,19 +144,104 @@ impl<'a> FindingContext<'a> {
             .and_then(|motor| self.motors.get(motor.number.checked_sub(1)?))
     }
 
-    fn description(&self, cause: &Cause) -> Option<&'a str> {
+    fn input(&self, cause: &Cause) -> Option<&'a Variable> {
         let mut inputs = self.estimator.model().inputs.iter();
-        let input = inputs.find(|input| input.name == cause.input)?;
-        input.description.as_deref()
+        inputs.find(|input| input.name == cause.input)
     }
 }
 
-/// The finding with the highest value of `output`, a risk other than the profile's own; `None` if no finding is about it.
-pub(crate) fn highest_of<'f>(output: &str, findings: &'f [Finding]) -> Option<&'f Finding> {
-    let of_risk = findings
-        .iter()
-        .filter(|finding| finding.risk_output.as_deref() == Some(output));
-    of_risk.max_by(|a, b| a.value_pct.total_cmp(&b.value_pct))
+/// The values at which an input belongs fully to each of its terms: ` (calm at 0.01, violent at 0.036)`.
+fn scale(variable: &Variable) -> Option<String> {
+    let peaks = variable.partition_peaks()?;
+    let terms = variable.terms.iter().zip(peaks);
+    let terms = terms.map(|(term, peak)| format!("{} at {}", term.name, number(peak, 4)));
+    Some(format!(" ({})", terms.collect::<Vec<_>>().join(", ")))
+}
+
+/// The condition that raised a finding: `risk over 62 %`.
+fn passed(finding: &Finding) -> String {
+    let measure = match &finding.risk_output {
+        Some(output) => finding
+            .measure
+            .to_string()
+            .replace("risk", &format!("`{output}`")),
+        None => finding.measure.to_string(),
+    };
+    let side = match finding.measure {
+        Measure::IdleInAir => return measure,
+        Measure::Reserve => "under",
+        _ => "over",
+    };
+    format!("{measure} {side} {} %", number(finding.threshold_pct, 2))
+}
+
+/// The times at which the levels of a finding were raised.
+fn raised(finding: &Finding, at: impl Fn(f64) -> String) -> String {
+    match finding.failed_s {
+        None => format!("raised at {}", at(finding.raised_s)),
+        Some(failed_s) if failed_s > finding.raised_s => {
+            format!("WARN at {}, FAIL at {}", at(finding.raised_s), at(failed_s))
+        }
+        Some(failed_s) => format!("FAIL at {}", at(failed_s)),
+    }
+}
+
+/// The highest risk of a flight in the judged time, or the peak of a finding if it is higher.
+pub(crate) fn highest(assessed: &Assessment) -> Option<Peak> {
+    let risk_pct = |step: &Step| Some(step.estimate?.risk_pct);
+    peak(assessed, None, assessed.summary.risk_max, risk_pct)
+}
+
+/// The highest value of another risk of the profile, by its index, at the steps or in a finding. `None` if the risk was
+/// never known.
+pub(crate) fn highest_other(assessed: &Assessment, risk: usize) -> Option<Peak> {
+    let risk_pct = |step: &Step| {
+        let value = step.other_risks_pct.get(risk).copied();
+        value.filter(|value| value.is_finite())
+    };
+    let judged = assessed.steps.iter().filter(|step| step.judged);
+    let of_steps = largest(judged, risk_pct);
+    let output = assessed.other_risks.get(risk)?;
+    peak(assessed, Some(output), of_steps, risk_pct)
+}
+
+/// The highest of a peak and the peaks of the findings of a risk.
+fn peak(
+    assessed: &Assessment,
+    output: Option<&str>,
+    mut highest: Option<Peak>,
+    risk_pct: impl Fn(&Step) -> Option<f64>,
+) -> Option<Peak> {
+    let of_risk = |finding: &&Finding| {
+        finding.measure == Measure::Risk && finding.risk_output.as_deref() == output
+    };
+    for finding in assessed.findings.iter().filter(of_risk) {
+        if highest.is_none_or(|peak| finding.value_pct > peak.value_pct) {
+            let steps = assessed.steps.iter();
+            let within = steps.filter(|step| (finding.from_s..=finding.to_s).contains(&step.t_s));
+            highest = Some(Peak {
+                t_s: largest(within, &risk_pct).map_or(finding.raised_s, |peak| peak.t_s),
+                value_pct: finding.value_pct,
+            });
+        }
+    }
+    highest
+}
+
+fn largest<'s>(
+    steps: impl Iterator<Item = &'s Step>,
+    risk_pct: impl Fn(&Step) -> Option<f64>,
+) -> Option<Peak> {
+    let known = steps.filter_map(|step| {
+        Some(Peak {
+            t_s: step.t_s,
+            value_pct: risk_pct(step)?,
+        })
+    });
+    known.reduce(|highest, next| match next.value_pct > highest.value_pct {
+        true => next,
+        false => highest,
+    })
 }
 
 /// The advice of a finding, and the positions of the motors that it names.

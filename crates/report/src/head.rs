@@ -1,18 +1,16 @@
 //! The head of a report: the verdict in a sentence, findings, vehicle and figures.
 
 use flagred::{
-    estimator::Estimator,
-    flight::{Assessment, Peak, Verdict},
+    flight::{Peak, Verdict},
     loaded::Loaded,
     profile::{ErrorFrequency, Reliability},
-    verdict::Measure,
 };
 use maud::{Markup, html};
 
 use crate::{
     charts,
     clock::Clock,
-    finding::{self, FindingContext},
+    finding::{self, FindingContext, highest},
     names::words_of,
     subject::Subject,
     words,
@@ -32,7 +30,7 @@ pub(crate) fn about(subject: &Subject, loaded: &Loaded) -> Markup {
         flight, assessed, ..
     } = subject;
     html! {
-        (figures(subject, &loaded.estimator))
+        (figures(subject))
         p.soft { (words::vehicle(flight)) }
         @if !flight.report.is_clean() {
             p.soft { (words::damage(&flight.report)) }
@@ -69,28 +67,6 @@ pub(crate) fn share(value: Option<f64>) -> String {
     percent(value.map(|share| 100.0 * share))
 }
 
-/// The highest risk of a flight in the judged time, or the peak of a finding if it is higher.
-pub(crate) fn highest(assessed: &Assessment) -> Option<Peak> {
-    let of_findings = assessed
-        .findings
-        .iter()
-        .filter(|finding| finding.measure == Measure::Risk && finding.risk_output.is_none());
-    let mut highest = assessed.summary.risk_max;
-    for finding in of_findings {
-        if highest.is_none_or(|peak| finding.value_pct > peak.value_pct) {
-            let steps = assessed.steps.iter();
-            let within = steps.filter(|step| (finding.from_s..=finding.to_s).contains(&step.t_s));
-            let risks = within.filter_map(|step| Some((step.t_s, step.estimate?.risk_pct)));
-            let peak = risks.max_by(|a, b| a.1.total_cmp(&b.1));
-            highest = Some(Peak {
-                t_s: peak.map_or(finding.raised_s, |(t_s, _)| t_s),
-                value_pct: finding.value_pct,
-            });
-        }
-    }
-    highest
-}
-
 fn at(peak: Peak, clock: Clock) -> String {
     format!("{:.0} % at {}", peak.value_pct, clock.at(peak.t_s))
 }
@@ -121,7 +97,10 @@ pub(crate) fn findings(subject: &Subject, loaded: &Loaded) -> Markup {
                     br;
                     (finding::advice(context, line.worst, &subject.flight))
                     br;
-                    span.soft { (line.when(clock)) ". " (context.details_by(line.worst, clock)) }
+                    span.soft {
+                        (line.when(clock)) " (log time " (Clock::Log.span(line.worst.from_s, line.worst.to_s)) "). "
+                        (context.details_by(line.worst, clock))
+                    }
                 }
             }
             @if unknown.is_none() && assessed.findings.is_empty() {
@@ -136,7 +115,7 @@ pub(crate) fn findings(subject: &Subject, loaded: &Loaded) -> Markup {
     }
 }
 
-fn figures(subject: &Subject, estimator: &Estimator) -> Markup {
+fn figures(subject: &Subject) -> Markup {
     let summary = &subject.assessed.summary;
     let clock = Clock::Since(subject.stretch().start_s);
     let of_air = |part_s: f64| share((summary.in_air_s > 0.0).then(|| part_s / summary.in_air_s));
@@ -161,11 +140,10 @@ fn figures(subject: &Subject, estimator: &Estimator) -> Markup {
     ];
     let risks = risks.into_iter();
     let risks = risks.filter_map(|(name, value)| Some((name.to_owned(), value?)));
-    let others = estimator.profile().other_risks.iter().filter_map(|risk| {
-        let worst = finding::highest_of(&risk.output, &subject.assessed.findings)?;
-        let span = clock.span(worst.from_s, worst.to_s);
-        let value = format!("{:.0} %, within {span}", worst.value_pct);
-        Some((format!("Highest {}", words_of(&risk.output)), value))
+    let others = subject.assessed.other_risks.iter().enumerate();
+    let others = others.filter_map(|(risk, output)| {
+        let peak = finding::highest_other(&subject.assessed, risk)?;
+        Some((format!("Highest {}", words_of(output)), at(peak, clock)))
     });
     let figures = risks.chain(others).chain([time]);
     html! {
@@ -175,11 +153,9 @@ fn figures(subject: &Subject, estimator: &Estimator) -> Markup {
         }
         @if summary.risk_max.is_some() {
             p.soft {
-                "The risk is known for " (of_air(summary.assessed_s)) " of that time and interpolated for "
+                (if subject.assessed.other_risks.is_empty() { "The risk is" } else { "All risks are" })
+                " known for " (of_air(summary.assessed_s)) " of that time. The risk is interpolated for "
                 (of_air(summary.filled_s)) "."
-                @if words::unknown_share_pct(summary).is_some() && let Some(reason) = &subject.assessed.unknown_risk {
-                    " A reason why it was unknown: " (reason) "."
-                }
                 @if has_motors { " Motors were at a limit for " (share(summary.saturated_share)) " of it." }
                 @if has_motors {
                     " The seconds around take-off and landing are left out of the mean and elevated risk."

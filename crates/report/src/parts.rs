@@ -202,7 +202,8 @@ fn section(
     }
 }
 
-/// The rules that were dominant at some time, each with its share of the time. The part [`Part::Texts`] lists all rules.
+/// The rules that were dominant at some time, each with its share of the time, and the rules that findings name. The part
+/// [`Part::Texts`] contains all rules.
 fn rules(model: &Model, assessed: &Assessment) -> Markup {
     let known = assessed.steps.iter().filter_map(|step| step.estimate);
     let total = known.clone().count();
@@ -212,29 +213,40 @@ fn rules(model: &Model, assessed: &Assessment) -> Markup {
             *steps += 1;
         }
     }
-    let mut dominant: Vec<_> = model.rules.iter().zip(steps).enumerate().collect();
-    dominant.retain(|(_, (_, steps))| *steps > 0);
-    dominant.sort_by_key(|(_, (_, steps))| std::cmp::Reverse(*steps));
+    let dominant = steps.iter().filter(|steps| **steps > 0).count();
+    let causes = assessed
+        .findings
+        .iter()
+        .filter_map(|finding| finding.cause.as_ref());
+    let named: Vec<usize> = causes.map(|cause| cause.rule).collect();
+    let mut listed: Vec<_> = model.rules.iter().zip(steps).enumerate().collect();
+    listed.retain(|(rule, (_, steps))| *steps > 0 || named.contains(rule));
+    listed.sort_by_key(|(_, (_, steps))| std::cmp::Reverse(*steps));
     let percent = |steps: usize| 100.0 * steps as f64 / total as f64;
     html! {
         @if total > 0 {
             .scroll { table.rules {
                 thead { tr { th.n { "#" } th { "Rule" } th.n { "Support" } th.n { "Dominant" } } }
                 tbody {
-                    @for (i, (rule, steps)) in &dominant {
+                    @for (i, (rule, steps)) in &listed {
                         tr {
                             td.n { (i + 1) }
                             td { (rule.rule.to_string()) }
                             td.n { @if let Some(support) = rule.support { (support) } }
                             td.n {
-                                @if percent(*steps) < 0.5 { "< 1 % " } @else { (format!("{:.0} % ", percent(*steps))) }
+                                @if *steps == 0 { "never " }
+                                @else if percent(*steps) < 0.5 { "< 1 % " }
+                                @else { (format!("{:.0} % ", percent(*steps))) }
                                 span.bar style={ "width:" (number(percent(*steps) / 25.0, 2)) "rem" } {}
                             }
                         }
                     }
                 }
             } }
-            p.soft { (dominant.len()) " of " (model.rules.len()) " rules were dominant at some point." }
+            p.soft {
+                (dominant) " of " (model.rules.len()) " rules were dominant at some point."
+                @if listed.len() > dominant { " The others in the table are rules that findings name." }
+            }
         }
     }
 }

@@ -5,16 +5,15 @@ use std::io::{self, Write};
 use anstyle::{AnsiColor, Style};
 use flagred::{
     estimator::Estimator,
-    flight::{Assessment, Peak, Summary, Verdict},
+    flight::{Assessment, Peak, Summary, UnknownRisk, Verdict},
     profile::{ErrorFrequency, Profile},
     shipped,
-    verdict::Level,
+    verdict::{Level, LevelSettings, VerdictSettings},
 };
 use flagred_flightlog::Flight;
 use fuzzy::drawing::{number, visible};
 
 use crate::{
-    clock::Clock,
     curve::over_time_text,
     finding::{self, FindingContext},
 };
@@ -72,22 +71,20 @@ pub fn write(
             text += &format!("; profile {}", visible(profile));
         }
         indented(out, &text)?;
+        if verbose {
+            indented(out, &levels(&estimator.profile().verdict))?;
+        }
     }
-    if assessed.summary.assessed_s > 0.0 {
+    if assessed.summary.assessed_s > 0.0 || assessed.summary.risk_max.is_some() {
         indented(out, &summary(assessed, verbose))?;
-        for risk in &estimator.profile().other_risks {
-            if let Some(worst) = finding::highest_of(&risk.output, &assessed.findings) {
-                let (name, span) = (
-                    visible(&risk.output),
-                    Clock::Log.span(worst.from_s, worst.to_s),
-                );
-                let text = format!("{name}: highest {:.0} %, within {span}", worst.value_pct);
-                indented(out, &text)?;
-            }
+    }
+    for (risk, output) in assessed.other_risks.iter().enumerate() {
+        if let Some(peak) = finding::highest_other(assessed, risk) {
+            indented(out, &format!("{output}: highest {}", at(peak)))?;
         }
-        if verbose && let Some(text) = reliability(&assessed.summary, estimator.profile()) {
-            indented(out, &text)?;
-        }
+    }
+    if verbose && let Some(text) = reliability(&assessed.summary, estimator.profile()) {
+        indented(out, &text)?;
     }
     writeln!(out)?;
     let context = FindingContext {
@@ -150,6 +147,15 @@ pub fn write_line(
             in_the_air(flight)
         ));
     }
+    for (risk, output) in assessed.other_risks.iter().enumerate() {
+        let peak = finding::highest_other(assessed, risk);
+        parts.extend(peak.map(|peak| format!("highest {output} {:.0} %", peak.value_pct)));
+    }
+    parts.extend(
+        unknown_risks(assessed)
+            .into_iter()
+            .map(|(unknown, _)| unknown),
+    );
     for assumed in &assessed.assumed_inputs {
         let value = number(assumed.value, 6);
         parts.push(format!("`{}` assumed to be {value}", assumed.input));
@@ -224,6 +230,9 @@ pub fn effective_range(effective: &flagred_flightlog::Range) -> String {
     )
 }
 
+/// The largest share of the time in the air for which a risk may be unknown without a note.
+const LARGEST_UNKNOWN_SHARE: f64 = 0.05;
+
 /// The maximum number of spans of time that are listed on a line.
 const MAX_SPANS: usize = 12;
 
@@ -256,6 +265,9 @@ pub fn notes(flight: &Flight, assessed: &Assessment) -> Vec<String> {
             number(assumed.value, 6)
         ));
     }
+    for (unknown, help) in unknown_risks(assessed) {
+        notes.push(unknown + &help.map_or(String::new(), |help| format!("; {help}")));
+    }
     let left_out = &flight.report.left_out;
     if !left_out.is_empty() {
         notes.push(format!(
@@ -277,6 +289,34 @@ pub fn notes(flight: &Flight, assessed: &Assessment) -> Vec<String> {
         ));
     }
     notes
+}
+
+/// The risks that were unknown for more than 5 % of the time, each with the reason and advice. The reason of a missing
+/// verdict is reported anyway, so a risk that is unknown for the same reason is left out, and so is the only risk of the
+/// profile if it was never known.
+fn unknown_risks(assessed: &Assessment) -> Vec<(String, Option<&'static str>)> {
+    let in_air_s = assessed.summary.in_air_s;
+    let is_reported = |risk: &UnknownRisk| match &assessed.verdict {
+        Verdict::NotAvailable(reason) => {
+            let is_only = assessed.other_risks.is_empty() && assessed.summary.assessed_s == 0.0;
+            is_only || reason.to_string().starts_with(&risk.reason)
+        }
+        Verdict::Known(_) => false,
+    };
+    let unknown = assessed
+        .unknown_risks
+        .iter()
+        .filter(|risk| risk.unknown_s > LARGEST_UNKNOWN_SHARE * in_air_s && !is_reported(risk));
+    let sentences = unknown.map(|risk| {
+        let share_pct = 100.0 * risk.unknown_s / in_air_s;
+        let time = match share_pct >= 99.5 {
+            true => "the whole time".to_owned(),
+            false => format!("{share_pct:.0} % of the time"),
+        };
+        let sentence = format!("`{}` is unknown for {time}: {}", risk.output, risk.reason);
+        (sentence, risk.help)
+    });
+    sentences.collect()
 }
 
 /// The first of the signals that are missing from the log.
@@ -345,11 +385,7 @@ pub fn conversion(name: &str, flight: &Flight) -> Vec<String> {
 
 fn summary(assessed: &Assessment, verbose: bool) -> String {
     let summary = &assessed.summary;
-    let at = |peak: Option<Peak>| {
-        peak.map_or("unknown".to_owned(), |peak| {
-            format!("{:.0} % at {:.1} s", peak.value_pct, peak.t_s)
-        })
-    };
+    let at = |peak: Option<Peak>| peak.map_or("unknown".to_owned(), at);
     let share = |part: f64| 100.0 * part / summary.in_air_s;
     let mut text = match summary.risk_mean_pct {
         Some(mean) => format!("risk: mean {mean:.0} %, highest {}", at(summary.risk_max)),
@@ -364,19 +400,11 @@ fn summary(assessed: &Assessment, verbose: bool) -> String {
             share(summary.filled_s)
         );
     }
-    if let Some(unknown_pct) = unknown_share_pct(summary) {
-        text += &format!("; risk unknown for {unknown_pct:.0} % of the time");
-        if let Some(reason) = &assessed.unknown_risk {
-            text += &format!(": {reason}");
-        }
-    }
     text
 }
 
-/// The share of the time in the air in which the risk was unknown, in %; `None` if it is at most 5 %.
-pub(crate) fn unknown_share_pct(summary: &Summary) -> Option<f64> {
-    let known_pct = 100.0 * summary.assessed_s / summary.in_air_s;
-    (known_pct < 95.0).then_some(100.0 - known_pct)
+fn at(peak: Peak) -> String {
+    format!("{:.0} % at {:.1} s", peak.value_pct, peak.t_s)
 }
 
 /// Formats the share of moments that were followed by an error: `54 % of 1280`; `None` if there are no moments.
@@ -397,7 +425,8 @@ fn reliability(summary: &Summary, profile: &Profile) -> Option<String> {
         .collect();
     (!shares.is_empty()).then(|| {
         format!(
-            "moments with a risk of {} to {} % that were followed by an attitude error over 5 degrees within 5 s: {}",
+            "in the flights that the rules were tested on, moments with a risk of {} to {} % were followed by an attitude error over \
+             5 degrees within 5 s: {}",
             row.from_pct,
             row.to_pct,
             shares.join(", ")
@@ -410,6 +439,25 @@ fn style(verdict: &Verdict) -> Style {
         Verdict::Known(level) => level_style(*level),
         Verdict::NotAvailable(_) => Style::new().bold(),
     }
+}
+
+/// The thresholds of the levels: `WARN after 0.2 s at a risk of 62 % or an elevated risk of 60 %`.
+fn levels(verdict: &VerdictSettings) -> String {
+    let level = |name: Level, of: &LevelSettings| {
+        let percent = |limit: f64| number(limit, 2);
+        let risk = of
+            .raise
+            .risk_pct
+            .map(|limit| format!("a risk of {} %", percent(limit)));
+        let elevated = of.raise.elevated_risk_pct;
+        let elevated = elevated.map(|limit| format!("an elevated risk of {} %", percent(limit)));
+        let any: Vec<String> = risk.into_iter().chain(elevated).collect();
+        let after_s = number(of.after_s, 3);
+        (!any.is_empty()).then(|| format!("{name} after {after_s} s at {}", any.join(" or ")))
+    };
+    let levels = [(Level::Warn, &verdict.warn), (Level::Fail, &verdict.fail)];
+    let levels = levels.into_iter().filter_map(|(name, of)| level(name, of));
+    format!("levels: {}", levels.collect::<Vec<_>>().join("; "))
 }
 
 /// The style of a level on a terminal.

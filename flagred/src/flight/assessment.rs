@@ -3,7 +3,10 @@
 use alloc::{string::String, vec::Vec};
 
 use super::{Finding, Reason, RiskInterval, Verdict};
-use crate::{monitor::Estimate, profile::Profile};
+use crate::{
+    monitor::{Estimate, Unknown},
+    profile::Profile,
+};
 
 /// The assessment of a flight.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,9 +26,8 @@ pub struct Assessment {
     pub other_risks: Vec<String>,
     /// The inputs whose values were assumed, at least until their signals were known.
     pub assumed_inputs: Vec<AssumedInput>,
-    /// The reason why a risk was unknown in the air; of several reasons, the one that applied longest. `None` if all
-    /// risks were always known.
-    pub unknown_risk: Option<String>,
+    /// The risks of the profile that were unknown for some time in the air, in the order of the profile.
+    pub unknown_risks: Vec<UnknownRisk>,
     /// The risk over time.
     pub steps: Vec<Step>,
     /// The distance between the steps in seconds, if it is larger than requested because at most 250,000 steps are
@@ -60,6 +62,67 @@ impl AssumedInput {
                 })
             })
             .collect()
+    }
+}
+
+/// A risk that was unknown for some time in the air.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct UnknownRisk {
+    /// The output of the rule set that is this risk.
+    pub output: String,
+    /// The time in the air for which the risk was unknown, in seconds.
+    pub unknown_s: f64,
+    /// Why it was unknown; of several reasons, the one that applied longest.
+    pub reason: String,
+    /// Advice on how to know it in the next flight, if there is any.
+    pub help: Option<&'static str>,
+    /// The same reason for use by programs.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub unknown: Unknown,
+}
+
+/// The time for which a risk was unknown for one reason.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct UnknownTime {
+    /// The index of the risk: 0 is that of the profile, and the others follow.
+    pub(super) risk: usize,
+    pub(super) reason: Unknown,
+    pub(super) total_s: f64,
+}
+
+impl UnknownTime {
+    /// The reason that applied for the longest time.
+    pub(super) fn longest<'a>(
+        times: impl Iterator<Item = &'a UnknownTime>,
+    ) -> Option<&'a UnknownTime> {
+        times.max_by(|a, b| a.total_s.total_cmp(&b.total_s))
+    }
+}
+
+impl UnknownRisk {
+    /// The risks of a profile that were unknown.
+    pub(super) fn of(times: &[UnknownTime], profile: &Profile) -> Vec<UnknownRisk> {
+        let others = profile.other_risks.iter().map(|risk| &risk.output);
+        let outputs = core::iter::once(&profile.output).chain(others).enumerate();
+        let unknown = outputs.filter_map(|(risk, output)| {
+            let of_risk = times.iter().filter(|time| time.risk == risk);
+            let unknown = UnknownTime::longest(of_risk.clone())?.reason;
+            Some(UnknownRisk {
+                output: output.clone(),
+                unknown_s: of_risk.map(|time| time.total_s).sum(),
+                reason: match unknown {
+                    // The log reports that the vehicle is in the air.
+                    Unknown::OnGround => "the motors idled".into(),
+                    _ => unknown.explain(profile),
+                },
+                help: None,
+                unknown,
+            })
+        });
+        unknown.filter(|risk| risk.unknown_s > 0.0).collect()
     }
 }
 
@@ -140,7 +203,7 @@ impl Assessment {
             inputs: Vec::new(),
             other_risks: Vec::new(),
             assumed_inputs: Vec::new(),
-            unknown_risk: None,
+            unknown_risks: Vec::new(),
             steps: Vec::new(),
             widened_step_s: None,
         }
@@ -151,4 +214,5 @@ state! {
     struct Step { t_s, estimate, risk_interval, elevated_risk_pct, margin, spread, judged, inputs, other_risks_pct }
     struct Summary { in_air_s, assessed_s, filled_s, risk_mean_pct, risk_max, elevated_risk_max, saturated_share }
     struct Peak { t_s, value_pct }
+    struct UnknownTime { risk, reason, total_s }
 }

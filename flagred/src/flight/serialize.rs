@@ -4,7 +4,7 @@ use alloc::string::{String, ToString};
 
 use serde::{Serialize, Serializer};
 
-use super::{Assessment, AssumedInput, Finding, Reason, Step, Summary, Verdict};
+use super::{Assessment, AssumedInput, Finding, Reason, Step, Summary, UnknownRisk, Verdict};
 use crate::{sample::RiskFields, verdict::Level};
 
 /// A verdict as one word.
@@ -84,6 +84,7 @@ impl Serialize for Assessment {
             findings_left_out: u64,
             summary: &'a Summary,
             assumed_inputs: &'a [AssumedInput],
+            unknown_risks: &'a [UnknownRisk],
             steps: Steps<'a>,
             widened_step_s: Option<f64>,
         }
@@ -93,6 +94,7 @@ impl Serialize for Assessment {
             findings_left_out: self.findings_left_out,
             summary: &self.summary,
             assumed_inputs: &self.assumed_inputs,
+            unknown_risks: &self.unknown_risks,
             steps: self.steps_by_name(),
             widened_step_s: self.widened_step_s,
         };

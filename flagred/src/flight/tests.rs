@@ -404,13 +404,26 @@ fn a_flight_is_good_where_every_risk_is_known() {
                 signals: &[],
             });
         }
-        assessor.finish().verdict
+        assessor.finish()
     };
-    assert_eq!(fly(&known), Verdict::Known(Level::Good));
+    assert_eq!(fly(&known).verdict, Verdict::Known(Level::Good));
     let unknown = Verdict::NotAvailable(Reason::RiskUnknown {
         unknown: Unknown::NoRule,
         explanation: "no rule applies, and there is nothing to interpolate from".into(),
         help: None,
     });
-    assert_eq!(fly(&estimator), unknown);
+    let assessment = fly(&estimator);
+    assert_eq!(assessment.verdict, unknown);
+    let of_torn = assessment
+        .unknown_risks
+        .iter()
+        .find(|risk| risk.output == "torn");
+    let UnknownRisk {
+        unknown_s, unknown, ..
+    } = of_torn.unwrap();
+    assert!(
+        *unknown_s > 0.95 * assessment.summary.in_air_s,
+        "{unknown_s}"
+    );
+    assert_eq!(*unknown, Unknown::NoRule);
 }

@@ -6,9 +6,9 @@ use fuzzy::engine::{Enclosure, Interval};
 
 use crate::{
     estimator::Estimator,
+    flight::Finding,
     lookup::UNREAD,
     monitor::{Estimate, Monitor},
-    verdict::{Level, Measure},
 };
 
 /// The values that a risk may have, because its inputs are computed from a limited number of samples. This interval
@@ -56,39 +56,40 @@ impl UncertainRisk {
 pub(super) struct UncertainPeak {
     /// The time at which the finding begins, in seconds.
     from_s: f64,
-    severity: Level,
     value_pct: f64,
     risk: Option<UncertainRisk>,
 }
 
 impl UncertainPeak {
-    /// Stores the intervals of the inputs after a sample if the risk of this sample is the highest of the open finding
-    /// so far. `peaks` has one element for each finding, the open one last.
-    pub(super) fn keep(peaks: &mut Vec<UncertainPeak>, monitor: &Monitor, estimate: Estimate) {
-        let open = monitor.open_of_risk();
-        let Some(open) = open
-            .filter(|open| open.measure == Measure::Risk && open.value_pct == estimate.risk_pct)
+    /// Stores the intervals of the inputs after a sample if the risk of this sample is the highest so far of the open
+    /// finding, or of a finding that may be opened. `peaks` has one element for each of the `ended` findings, and then
+    /// this one.
+    pub(super) fn keep(
+        peaks: &mut Vec<UncertainPeak>,
+        ended: &[Finding],
+        monitor: &Monitor,
+        estimate: Estimate,
+    ) {
+        let peak = monitor.peak_of_risk();
+        let Some((from_s, value_pct)) = peak.filter(|(_, highest)| *highest == estimate.risk_pct)
         else {
             return;
         };
-        let last = peaks.last_mut().filter(|last| last.from_s == open.from_s);
-        // The peak is the highest value since the worst level was raised.
-        let is_known = |last: &&mut UncertainPeak| {
-            last.severity == open.severity && last.value_pct >= open.value_pct
-        };
-        if last.as_ref().is_some_and(is_known) {
+        let last = peaks.last_mut();
+        if last.is_some_and(|last| last.from_s == from_s && last.value_pct >= value_pct) {
             return;
         }
-        let peak = UncertainPeak {
-            from_s: open.from_s,
-            severity: open.severity,
-            value_pct: open.value_pct,
-            risk: UncertainRisk::of(monitor, estimate),
+        // The last one is replaced unless it belongs to a finding that has ended.
+        let is_replaced = |last: &mut UncertainPeak| {
+            let mut ended = ended.iter().rev();
+            last.from_s == from_s || !ended.any(|finding| finding.from_s == last.from_s)
         };
-        match last {
-            Some(last) => *last = peak,
-            None => peaks.push(peak),
-        }
+        peaks.pop_if(is_replaced);
+        peaks.push(UncertainPeak {
+            from_s,
+            value_pct,
+            risk: UncertainRisk::of(monitor, estimate),
+        });
     }
 
     /// The highest risk of the finding that begins at a time.
@@ -148,6 +149,6 @@ impl<'e> RiskBounds<'e> {
 
 state! {
     struct UncertainRisk { estimate, inputs }
-    struct UncertainPeak { from_s, severity, value_pct, risk }
+    struct UncertainPeak { from_s, value_pct, risk }
     struct RiskInterval { low_pct, high_pct }
 }

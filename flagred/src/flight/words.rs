@@ -175,41 +175,41 @@ impl Words {
                 "command_noise",
                 ["command noise {peak} %", ""],
                 "The motor commands are noisy, by {peak} % of their range: vibration, or gains that are too high.",
-                "This alone is not a danger. Check propellers, mounts and filters after the flight.",
+                "This alone is not a danger. After landing, check propellers, mounts and filters.",
             ),
             Measure::Reserve => (
                 "low_thrust_reserve",
                 ["thrust reserve {peak} %", ""],
                 "The motors ran close to full thrust: on average only {peak} % of their range was left, less than {threshold} %. \
                  Gusts and climbs need that reserve.",
-                "Land soon. Fly with less payload or a fresh battery.",
+                "Land soon. Before the next flight, reduce payload or charge the battery.",
             ),
             Measure::Imbalance => (
                 "imbalance",
                 ["imbalance {peak} %", ", {motor}"],
                 "The motors share the load differently from earlier in the flight, by {peak} % of their range. The motor to check \
                  is {motor}, {side} its earlier share.",
-                "Land and check {motor}, and whether the load has shifted.",
+                "Land. After landing, check {motor}, and whether the load has shifted.",
             ),
             Measure::PairImbalance => (
                 "pair_imbalance",
                 ["pair imbalance {peak} %", ", {motor}"],
                 "The commands of two opposite motors differ by {peak} % of their range. The motor to check is {motor}, {side} the \
                  motor opposite: it may be weak, or the load may be off centre.",
-                "Land and check {motor}, and the position of battery and payload.",
+                "Land. After landing, check {motor}, and the position of battery and payload.",
             ),
             Measure::WeakMotor => (
                 "weak_motor",
                 ["{motor} weak: +{peak} %", ""],
                 "The command of {motor} rose by {peak} % of its range, compared with the other motors: this motor gives less thrust \
                  than before.",
-                "Land now. Check {motor}: propeller, motor, speed controller and wiring.",
+                "Land now. After landing, check {motor}: propeller, motor, speed controller and wiring.",
             ),
             Measure::IdleInAir => (
                 "motors_idle_in_air",
                 ["motors idle in the air", ""],
-                "The motors idled while the autopilot reported that the vehicle was in the air: it fell.",
-                "Find out why the motors stopped before the next flight: kill switch, failsafe, power.",
+                "The motors had idled for 3 s while the autopilot reported that the vehicle was in the air: it fell.",
+                "Before the next flight, find out why the motors stopped: kill switch, failsafe, power.",
             ),
         };
         Words {
@@ -224,8 +224,8 @@ impl Words {
 /// The advice for a risk whose input has no words of its own.
 fn advice(profile: &Profile) -> &'static str {
     match profile.reads_motors() {
-        true => "Reduce speed or land until the risk falls.",
-        false => "Reduce speed or stop until the risk falls.",
+        true => "Reduce speed or land until the risk falls. After landing, look for the cause.",
+        false => "Reduce speed or stop until the risk falls. After that, look for the cause.",
     }
 }
 

@@ -15,6 +15,10 @@ pub(crate) struct Alert {
     last_held_s: f64,
     /// The times since which the thresholds of WARN and FAIL have been reached, in seconds.
     reached_since_s: [Option<f64>; 2],
+    /// The time since which any threshold has been reached, in seconds.
+    begun_s: Option<f64>,
+    /// The highest risk and elevated risk in % of the open finding, or else since [`Alert::begun_s`].
+    highest_pct: [f64; 2],
     finding: Option<Finding>,
     /// Whether the level of the finding was raised but its cause is not set yet.
     needs_cause: bool,
@@ -51,6 +55,8 @@ impl Alert {
             level: Level::Good,
             last_held_s: 0.0,
             reached_since_s: [None; 2],
+            begun_s: None,
+            highest_pct: [f64::NEG_INFINITY; 2],
             finding: None,
             needs_cause: false,
         }
@@ -63,6 +69,14 @@ impl Alert {
     /// The open finding, with its values so far.
     pub(crate) fn open(&self) -> Option<Finding> {
         self.finding
+    }
+
+    /// The beginning in seconds and the highest risk in % of the open finding, or of the finding that begins if a
+    /// threshold stays reached.
+    #[cfg(feature = "std")]
+    pub(crate) fn peak(&self) -> Option<(f64, f64)> {
+        let opened_s = self.finding.map(|finding| finding.from_s);
+        Some((opened_s.or(self.begun_s)?, self.highest_pct[0]))
     }
 
     /// Whether the latest sample raised the level of the finding, so that its cause must be set by [`Alert::explain`].
@@ -105,7 +119,9 @@ impl Alert {
                 false => settings.raise.reached(risk_pct, elevated_pct),
             }
         });
-        self.record(&reached.map(|reached| reached.is_some()), motors);
+        let is_reached = reached.map(|reached| reached.is_some());
+        self.record(&is_reached, motors);
+        self.keep_highest(t_s, is_reached.contains(&true), [risk_pct, elevated_pct]);
         for (i, (level, settings)) in levels.into_iter().enumerate() {
             if reached[i].is_some() || settings.until.reached(risk_pct, elevated_pct).is_some() {
                 held = level.min(self.level);
@@ -123,17 +139,17 @@ impl Alert {
             }
             let since_s = *self.reached_since_s[i].get_or_insert(t_s);
             if level > self.level && t_s - since_s >= settings.after_s - ROUNDING_S {
-                self.raise(t_s, since_s, level, (measure, threshold_pct), motors);
+                self.raise(t_s, level, (measure, threshold_pct), motors);
                 step.change = Some(level);
                 held = level;
             }
         }
         if let Some(finding) = &mut self.finding {
-            let value = match finding.measure {
+            let [risk_pct, elevated_pct] = self.highest_pct;
+            finding.value_pct = match finding.measure {
                 Measure::ElevatedRisk => elevated_pct,
                 _ => risk_pct,
             };
-            finding.value_pct = finding.value_pct.max(value);
         }
         if held >= self.level {
             self.last_held_s = t_s;
@@ -161,20 +177,26 @@ impl Alert {
         }
     }
 
+    /// Keeps the highest values of the open finding, or of the time in which a threshold has been reached without a
+    /// break.
+    fn keep_highest(&mut self, t_s: f64, is_reached: bool, values_pct: [f64; 2]) {
+        let begins = is_reached && self.begun_s.is_none();
+        self.begun_s = self.begun_s.or(Some(t_s)).filter(|_| is_reached);
+        for (highest, value) in self.highest_pct.iter_mut().zip(values_pct) {
+            *highest = match begins && self.finding.is_none() {
+                true => value,
+                false => highest.max(value),
+            };
+        }
+    }
+
     /// Opens the finding, or raises it to FAIL.
-    fn raise(
-        &mut self,
-        t_s: f64,
-        since_s: f64,
-        level: Level,
-        by: (Measure, f64),
-        motors: &[Motor],
-    ) {
+    fn raise(&mut self, t_s: f64, level: Level, by: (Measure, f64), motors: &[Motor]) {
         self.level = level;
         let (measure, threshold_pct) = by;
         let failed_s = (level == Level::Fail).then_some(t_s);
         let opened = self.finding.unwrap_or(Finding {
-            from_s: since_s,
+            from_s: self.begun_s.unwrap_or(t_s),
             raised_s: t_s,
             ..Finding::NONE
         });
@@ -193,11 +215,6 @@ impl Alert {
             } else {
                 threshold_pct
             },
-            value_pct: if same {
-                opened.value_pct
-            } else {
-                f64::NEG_INFINITY
-            },
             motor: if is_worse {
                 weakest(motors)
             } else {
@@ -214,6 +231,7 @@ impl Alert {
         self.level = Level::Good;
         let [_, reaches_fail] = self.reached_since_s.map(|since_s| since_s.is_some());
         self.reached_since_s = [None; 2];
+        self.begun_s = None;
         let quiet_s = self.settings.quiet_before_landing_s;
         let is_landing = |finding: &Finding| {
             landed
@@ -257,7 +275,7 @@ fn weakest(motors: &[Motor]) -> Option<MotorFinding> {
 
 state! {
     struct Alert {
-        settings, level, last_held_s, reached_since_s, finding, needs_cause
+        settings, level, last_held_s, reached_since_s, begun_s, highest_pct, finding, needs_cause
     }
 }
 
@@ -401,6 +419,34 @@ mod tests {
         let motor = finding.motor.unwrap();
         assert_eq!((motor.number, motor.side), (2, Side::Upper));
         approx::assert_abs_diff_eq!(motor.margin_mean, 0.05, epsilon = 1e-12);
+    }
+
+    /// The risk is highest before the level is raised.
+    #[test]
+    fn a_finding_has_the_highest_value_of_its_whole_time() {
+        let (_, _, mut flown) = run(&[(1.0, 0.0, 0.0), (0.3, 99.0, 0.0), (1.0, 96.0, 0.0)]);
+        let finding = flown.end(2.3, false).ended.unwrap();
+        assert_eq!((finding.from_s, finding.raised_s), (1.0, 1.5));
+        assert_eq!(finding.value_pct, 99.0);
+        // A level that was reached for a shorter time than that of the finding, and values before it, do not count.
+        let (_, findings, _) = run(&[
+            (0.3, 100.0, 0.0),
+            (1.0, 0.0, 0.0),
+            (1.0, 96.0, 0.0),
+            (5.0, 0.0, 0.0),
+        ]);
+        assert_eq!((findings[0].from_s, findings[0].value_pct), (1.3, 96.0));
+        // The finding begins when WARN is reached, although FAIL is raised first.
+        let mut settings = SETTINGS;
+        settings.warn.after_s = 5.0;
+        let mut flown = SimulatedFlight::new([0.4, 0.95]);
+        flown.alert = Alert::new(settings);
+        for (t_s, risk_pct) in [(0.0, 98.0), (0.2, 0.0), (0.4, 96.0), (0.9, 96.0)] {
+            flown.push(t_s, risk_pct, 60.0);
+        }
+        let finding = flown.end(0.9, false).ended.unwrap();
+        assert_eq!((finding.from_s, finding.raised_s), (0.0, 0.9));
+        assert_eq!((finding.measure, finding.value_pct), (Measure::Risk, 98.0));
     }
 
     #[test]

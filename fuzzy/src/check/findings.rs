@@ -533,13 +533,21 @@ impl ModelPositions<'_> {
     }
 
     fn jump(&self, one: &Jump) -> Diagnostic {
+        // Inputs that the output does not depend on would distract from the cause.
+        let needed = self.model.inputs_of(&one.output);
+        let is_other = |name: &str| {
+            let mut inputs = self.model.inputs.iter();
+            !needed.contains(&name) && inputs.any(|input| input.name == name)
+        };
+        let mut at = one.at.clone();
+        at.retain(|place| !is_other(&place.input));
         let message = format!(
             "`{}` jumps from {} to {} along `{}` at {}",
             one.output,
             shown(one.below),
             shown(one.above),
             one.input,
-            coordinates(&one.at)
+            coordinates(&at)
         );
         Diagnostic::warning("jump", self.name(&one.output), message).help(
             "a vertical edge of a term, or a switch from one rule to another, causes it; let terms overlap, or accept intended jumps with `allow`; smaller jumps along the same input are not listed",

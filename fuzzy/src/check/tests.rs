@@ -355,6 +355,30 @@ fn jumps_are_found_at_their_positions() {
     );
 }
 
+#[test]
+fn a_jump_names_only_the_inputs_of_its_output() {
+    let text = "fuzzy: 1
+name: a
+inputs:
+  x: {range: [0, 1], partition: [low, high]}
+  y: {range: [0, 100], steps: {low: 20, enough: }}
+outputs:
+  z: {range: [0, 1], partition: [low, high]}
+  out: {range: [0, 100], terms: {none: {constant: 0}, all: {constant: 100}}, defuzzifier: weighted_average}
+rules:
+  - IF x IS low THEN z IS low
+  - IF x IS high THEN z IS high
+  - IF y IS low THEN out IS all
+  - IF y IS enough THEN out IS none
+";
+    let (_, findings) = report_of(text, &Options::default());
+    let jump = findings.iter().find(|one| one.code == "jump").unwrap();
+    assert_eq!(
+        jump.message,
+        "`out` jumps from 100 to 0 along `y` at y = 20"
+    );
+}
+
 /// The rules of `z` read the output `mid`, whose values cover only a part of its range.
 #[test]
 fn an_output_that_is_read_counts_as_an_input_over_its_range() {

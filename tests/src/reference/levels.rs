@@ -25,7 +25,7 @@ pub struct Moment {
 pub struct RaisedEpisode {
     /// The worst level of the period.
     pub level: Level,
-    /// The start of the period in which the thresholds of the first raised level were reached without interruption.
+    /// The start of the period in which the thresholds of any level were reached without interruption.
     pub from_s: f64,
     /// Time at which a level was first raised.
     pub raised_s: f64,
@@ -96,9 +96,11 @@ impl Levels {
             };
             if higher > self.level && t_s - since_s >= of.after_s - ROUNDING_S {
                 if self.level == Level::Good {
+                    let any = |m: &&Moment| levels.iter().any(|(level, of)| raises(*level, of, m));
+                    let first = moments.iter().rev().take_while(any).last();
                     self.all.push(RaisedEpisode {
                         level: higher,
-                        from_s: since_s,
+                        from_s: first.map_or(since_s, |moment| moment.t_s),
                         raised_s: t_s,
                         failed_s: None,
                         to_s: t_s,

@@ -344,6 +344,11 @@ class Assessment(AssessmentData):
         """The inputs whose values were assumed because the log lacks their signals (``if_missing`` of the profile)."""
         return {assumed["input"]: assumed["value"] for assumed in self._data["assumed_inputs"]}
 
+    @property
+    def unknown_risks(self) -> dict[str, str]:
+        """The risks of the profile that were unknown for some time in the air, each with the reason that applied longest."""
+        return {unknown["output"]: unknown["reason"] for unknown in self._data["unknown_risks"]}
+
     @cached_property
     def steps(self) -> Table:
         """The risk over time, a row per step: ``t_s``, ``risk`` in % with the ends of its interval ``risk_low`` and
@@ -381,12 +386,21 @@ class Assessment(AssessmentData):
     def _repr_html_(self) -> str:
         return framed(self.html())
 
+    def _unknown(self) -> Iterator[str]:
+        """A line for each risk that was unknown for more than 5 % of the time in the air."""
+        in_air_s = self.summary.in_air_s
+        for unknown in self._data["unknown_risks"]:
+            if unknown["unknown_s"] > 0.05 * in_air_s:
+                share_pct = 100 * unknown["unknown_s"] / in_air_s
+                yield f"  {unknown['output']} is unknown for {share_pct:.0f} % of the time: {unknown['reason']}"
+
     def __str__(self) -> str:
         lines = [f"{self.verdict} {self.flight.name}"]
         if self.reason is not None:
             lines.append(f"  no verdict: {self.reason}")
             lines.extend([f"  help: {self.help}"] if self.help else [])
         lines.extend(f"  {name} is assumed to be {value:g}" for name, value in self.assumed_inputs.items())
+        lines.extend(self._unknown())
         lines.extend(f"  {finding.severity} {finding}" for finding in self.findings)
         return "\n".join(lines)
 

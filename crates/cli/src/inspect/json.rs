@@ -81,9 +81,9 @@ struct Signal<'a> {
     unit: &'a str,
     /// The message or field of the log that contains the signal.
     source: &'a str,
-    /// The number of values.
+    /// The number of known values.
     samples: usize,
-    /// The number of values per second, excluding pauses.
+    /// The number of known values per second, excluding pauses.
     rate_hz: Option<f64>,
 }
 
@@ -129,7 +129,7 @@ fn signal(signal: flagred_flightlog::Signal<'_>) -> Signal<'_> {
         name: &signal.label.name,
         unit: &signal.label.unit,
         source: &signal.label.source,
-        samples: signal.values.len(),
+        samples: signal.known(),
         rate_hz: signal.rate_hz(),
     }
 }

@@ -256,13 +256,14 @@ fn signals(flight: &Flight) -> impl Iterator<Item = String> {
             Some(rate_hz) => format!("{rate_hz:.1} Hz"),
             None => "NA".into(),
         };
-        let label = signal.label;
+        let (label, known) = (signal.label, signal.known());
+        let unknown = match signal.values.len() - known {
+            0 => String::new(),
+            unknown => format!("; {unknown} more are unknown"),
+        };
         format!(
-            "{:<28} {:<5} {rate:>9} {:>8} samples  {}",
-            label.name,
-            label.unit,
-            signal.values.len(),
-            label.source
+            "{:<28} {:<5} {rate:>9} {known:>8} samples  {}{unknown}",
+            label.name, label.unit, label.source
         )
     })
 }

@@ -82,7 +82,7 @@ fn another_risk_is_named() {
     finding.risk_output = Some("battery_risk".into());
     let Words { code, text, .. } = finding.words(&shipped::flagred_battery());
     assert_eq!(code, "low_battery");
-    let expected = "The battery fell to 12.25 %. The risk `battery_risk` reached 78 %.";
+    let expected = "The battery was down to 12.25 % when this level was raised. The risk `battery_risk` reached 78 %.";
     assert_eq!(text, expected);
 }
 
@@ -94,7 +94,7 @@ fn words_name_the_motor_and_its_direction() {
     let words = weak.words(&estimator);
     assert_eq!(words.brief.concat(), "motor 3 or 8 weak: +24 %");
     assert!(
-        words.advice.contains("Check motor 3 or 8:"),
+        words.advice.contains("check motor 3 or 8:"),
         "{}",
         words.advice
     );
