@@ -1,4 +1,4 @@
-//! Time and allocations of single evaluations, batches, maps and tables.
+//! Benchmarks of the time and allocations of single evaluations, batches, maps and tables.
 
 use divan::{Bencher, black_box, counter::ItemsCount};
 use flagred_benches::{four_inputs, points, published, published_type2, tipper};

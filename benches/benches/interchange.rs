@@ -1,4 +1,5 @@
-//! Reading and writing 5,000 rules over six inputs, in the formats of other programs.
+//! Benchmarks of reading and writing a rule set with 5,000 rules over six inputs, in the file formats of other
+//! programs.
 
 use std::fmt::Write;
 

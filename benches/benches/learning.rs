@@ -1,5 +1,6 @@
-//! Time and memory of learning rules and of filling the gaps of a map, at the size of a large data set: 100,000 rows of
-//! four inputs with five terms each, and a map with 51 cells along each of four inputs (6.8 million cells).
+//! Benchmarks of the time and memory of learning rules and of filling the gaps of a map, at the size of a large data
+//! set: 100,000 rows of four inputs with five terms each, and a map with 51 cells along each of four inputs (6.8
+//! million cells).
 
 use divan::{Bencher, black_box, counter::ItemsCount};
 use flagred::gap::{FilledMap, Filling, GapMethod, GapSettings};
@@ -20,8 +21,8 @@ fn main() {
 
 const ROWS: usize = 100_000;
 
-/// Returns rows that are spread evenly over the ranges of the inputs, with the output of a rule set as the last value,
-/// and that rule set without its rules.
+/// Returns a rule set without its rules, and rows that are spread evenly over the ranges of its inputs. The last value
+/// of each row is the output of the complete rule set.
 fn rows() -> (Model, Vec<Row>) {
     let model = four_inputs();
     let engine = Engine::new(&model).unwrap();

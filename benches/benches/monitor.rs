@@ -1,5 +1,5 @@
-//! Time and allocations for a sample of eight motors, with the monitor for computers and with the monitor for flight
-//! controllers.
+//! Benchmarks of the time and allocations for processing a sample of eight motors, with the monitor for computers
+//! and with the monitor for flight controllers.
 
 use divan::{Bencher, black_box, counter::ItemsCount};
 use flagred::{
@@ -28,7 +28,7 @@ fn estimator(name: &str) -> Estimator {
     }
 }
 
-/// The commands of motors that compensate for gusts.
+/// Returns the commands of motors that compensate for gusts, for the sample with the index `i`.
 fn commands(i: u32) -> [f64; MOTORS] {
     let t_s = f64::from(i) * 0.02;
     let gust = (t_s * 1.3).sin().max(0.0) * 0.4;

@@ -1,8 +1,9 @@
-//! Writes the reference systems as files for other programs, and measures our times for the comparison with them.
+//! Writes the reference systems as files for other programs, and measures how long this engine takes, for the
+//! comparison with these programs.
 //!
-//! `write FOLDER` writes each system in fuzzylite's language, and a table of points with the exact outputs. For the
-//! type-2 system it writes only the points, since that language has no type-2 terms. `time` prints our time for each
-//! system, as `system,program,ns`.
+//! `write FOLDER` writes each system in fuzzylite's language, and a table of points with the exact outputs. For
+//! the type-2 system it writes only the points, since that language has no type-2 terms. `time` prints this
+//! engine's time for each system, as `system,program,ns`.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -55,7 +56,8 @@ fn write(folder: &Path, name: &str, model: &Model) -> Result<(), Box<dyn std::er
     write_points(folder, name, model)
 }
 
-/// Writes points with the exact outputs; for interval type-2 terms also the bounds of the exact intervals.
+/// Writes points with the exact outputs. For a system with interval type-2 terms, also writes the bounds of the exact
+/// intervals.
 fn write_points(
     folder: &Path,
     name: &str,

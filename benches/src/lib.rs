@@ -252,7 +252,8 @@ pub fn points(model: &Model, count: usize) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// System (g), a common kind with gaussian terms: 2 inputs of 5 terms, 25 rules, and an output with `outputs` terms.
+/// System (g), a common kind of system with gaussian terms: 2 inputs of 5 terms, 25 rules, and an output with `outputs`
+/// terms.
 pub fn gaussians(outputs: usize) -> Model {
     let of = |name: &str, low: f64, high: f64, count: usize| {
         let step = (high - low) / (count - 1) as f64;

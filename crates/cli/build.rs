@@ -1,4 +1,4 @@
-//! Embeds the gzipped page of `flagred studio` in the program; an empty file if there is no page.
+//! Embeds the gzipped page of `flagred studio` in the program, or an empty file if there is no page.
 
 use std::{env, fs, io::Write, path::PathBuf};
 

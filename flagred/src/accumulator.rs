@@ -45,7 +45,7 @@ impl Default for AccumulatorSettings {
     }
 }
 
-/// The elevated risk, in % from 0 to 100, sample by sample. The window of risks is in the caller's memory.
+/// Computes the elevated risk, in % from 0 to 100, sample by sample. The window of risks is in the caller's memory.
 #[derive(Debug, Clone)]
 pub(crate) struct Accumulator {
     settings: AccumulatorSettings,
@@ -94,7 +94,8 @@ impl Accumulator {
     }
 }
 
-/// `Phi((x - mean) / std)` with `Phi(z) = (1 + erf(z / sqrt 2)) / 2`; at `std = 0` its limit, a step.
+/// `Phi((x - mean) / std)` with `Phi(z) = (1 + erf(z / sqrt 2)) / 2`; for `std = 0` the limit of this function, which
+/// is a step.
 fn share_below(x: f64, mean: f64, std: f64) -> f64 {
     let distance = x - mean;
     if distance == 0.0 {

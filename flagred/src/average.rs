@@ -1,6 +1,6 @@
 //! Moving averages that store two numbers, where a window would need too much memory.
 
-/// A moving average; the plain mean until its time constant has passed.
+/// A moving average. Until its time constant has passed, it is the plain mean of all values.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Average {
     pub(crate) value: f64,

@@ -14,11 +14,11 @@ pub struct Proposition {
     pub literal: u32,
 }
 
-/// The cause of the risk when a level was reached, as indices. Of the rules that fired, the cause is the one that
-/// raises the risk most ([`Table::raised_by`](fuzzy::table::Table::raised_by)). Of the true propositions in its
-/// antecedent, the cause is the one that the fewest rules share. If this proposition is about an output, the cause is
-/// instead the rule that contributes most to the term of this output, and so on until the proposition is about an
-/// input.
+/// The cause of the risk when a level was reached: a rule and one of its propositions, as indices. The rule is the
+/// one that raises the risk most ([`Table::raised_by`](fuzzy::table::Table::raised_by)) among all rules that fired.
+/// The proposition is the one that the fewest rules share among the true propositions in the antecedent of that rule.
+/// If this proposition is about an output, the search continues with the rule that contributes most to the term of
+/// this output, and so on until a proposition is about an input.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cause {
     /// The index of the rule in the rule set.
@@ -48,10 +48,10 @@ pub(crate) enum RuleQuery {
 }
 
 impl Propositions<'_> {
-    /// Returns the cause of a risk for given values of the inputs, in the order of the profile. `find_rule` finds the rule of
-    /// an output. It passes the rule and the degrees of the literals to a function, which selects the proposition. If
-    /// the proposition is about an output, the search continues with that output. The rule index in the cause counts
-    /// the rules of all stages.
+    /// Returns the cause of a risk for given values of the inputs, in the order of the profile. `find_rule` finds the
+    /// rule for an output. It passes this rule and the degrees of the literals to a function that selects a proposition
+    /// of the rule. If the proposition is about an output, the search continues with that output. The rule index in the
+    /// cause counts the rules of all stages.
     pub(crate) fn cause(
         &self,
         inputs: &[f64],

@@ -144,8 +144,8 @@ pub enum Observed {
     CommandNoise,
     /// The signal with this index among the signals of a sample.
     Named(usize),
-    /// The signal `a` minus the signal `b`, by their indices; for angles in degrees the shorter way around, in [-180,
-    /// 180).
+    /// The signal `a` minus the signal `b`, by their indices. If both are angles in degrees, the difference is taken
+    /// the shorter way around, in [-180, 180).
     Difference {
         /// The minuend.
         a: usize,

@@ -259,8 +259,8 @@ impl Estimator {
         self.0.output
     }
 
-    /// The smallest and the largest value that fills gaps while each input is within its interval. The inputs are in
-    /// the order of the model.
+    /// The smallest and the largest of the values that fill gaps while each input is within its interval. The inputs
+    /// are in the order of the model.
     pub(crate) fn filled_within(&self, inputs: &[Interval]) -> Option<Interval> {
         self.0.filling.borrowed()?.within(inputs)
     }

@@ -67,8 +67,8 @@ impl Exponential {
         libm::round(self.samples) as u32
     }
 
-    /// The duration of samples without a gap that would have the same weight, in seconds; the inverse of `constant (1 -
-    /// exp(-seconds / constant))`.
+    /// The duration, in seconds, of samples without a gap until now that would have the same weight. This is the
+    /// inverse of `constant (1 - exp(-seconds / constant))`.
     pub(crate) fn covered_s(&self) -> f64 {
         let share = (self.moments.weight() / self.constant_s).min(1.0);
         -self.constant_s * libm::log1p(-share)

@@ -172,7 +172,8 @@ impl Assessor {
         })
     }
 
-    /// From now on computes the interval of the risk of each step, which takes longer than the rest of the assessment.
+    /// Makes the assessor compute the interval of the risk of each step from now on. This takes longer than the rest of
+    /// the assessment.
     pub fn with_intervals(mut self) -> Assessor {
         self.has_intervals = true;
         self

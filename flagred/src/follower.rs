@@ -32,15 +32,15 @@ pub(crate) struct Follower {
     bin: Bin,
     last_s: Option<f64>,
     in_air_since_s: Option<f64>,
-    /// Whether the windows have discarded the take-off.
+    /// Whether the take-off has been discarded from the windows.
     has_discarded_take_off: bool,
     /// The time since which the vehicle seems to be on the ground, in seconds; the flight may continue within
     /// [`TOUCH_S`].
     down_since_s: Option<f64>,
-    /// Whether idling motors mean a landing, or began to idle during trouble; `None` while they do not idle.
+    /// What idling motors mean: a landing, or trouble in flight; `None` while the motors do not idle.
     idle: Option<Idle>,
-    /// The last time at which the motors did not idle since the autopilot reported that the vehicle is on the ground,
-    /// in seconds.
+    /// The last time in seconds at which the motors did not idle; `None` if there is no such time since the autopilot
+    /// last reported that the vehicle is on the ground.
     lifted_s: Option<f64>,
     /// Whether the vehicle counts as falling, because its motors idle in the air.
     falls: bool,
@@ -108,7 +108,7 @@ pub(crate) struct Feed<'a> {
 }
 
 impl Feed<'_> {
-    /// Whether the risk depends on an input, or on a ratio of it.
+    /// Whether the risk depends on an input, or on a ratio that divides by it.
     pub(crate) fn needs(&self, input: usize) -> bool {
         self.order.iter().any(|from| {
             let read = self.inputs.get(*from as usize);
@@ -294,8 +294,8 @@ impl Follower {
         self.alert.open().or_else(|| self.notices.open().copied())
     }
 
-    /// The beginning and the highest value of the open finding of the risk, or of one that may be opened: see
-    /// [`Alert::peak`].
+    /// The beginning and the highest value of the open finding of the risk, or of the finding that will be
+    /// opened if a threshold stays reached: see [`Alert::peak`].
     #[cfg(feature = "std")]
     pub(crate) fn peak_of_risk(&self) -> Option<(f64, f64)> {
         self.alert.peak()
@@ -383,7 +383,7 @@ impl Follower {
             return false;
         }
         let is_long = |lifted_s: f64| t_s - lifted_s >= FALL_S;
-        // During an alarm, only the rules decide: a fall does not begin.
+        // During an alarm, only the rules determine the level, so a fall does not begin.
         self.falls = (fell || self.alert.level() == Level::Good)
             && sample.in_air == Some(true)
             && self.lifted_s.is_some_and(is_long);

@@ -118,7 +118,7 @@ fn assess_by(
             longest_gap_s: profile.sampling.longest_gap_s,
         });
     }
-    // As for a vehicle whose live link is lost: a flight that ended in a reboot in the air is not GOOD, and if its risk
+    // A reboot in the air is treated like the loss of a vehicle's live link: the flight is not GOOD, and if its risk
     // was unknown, the reboot is the reason.
     if let Some(&at_s) = flight.rebooted_in_air_s.first()
         && is_in_doubt(&assessment.verdict)
@@ -128,7 +128,8 @@ fn assess_by(
     assessment
 }
 
-/// The reason why a risk is unknown if the log is the cause, or else advice on how to know it.
+/// Returns the reason why a risk is unknown if the log causes this; otherwise advice on how to get a known risk, if
+/// there is any.
 fn explained(
     unknown: &Unknown,
     flight: &Flight,
@@ -170,7 +171,8 @@ fn explained(
 const SPARSE_HELP: &str = "an empty cell is an unknown value: if the signal has fewer values than the table has rows, repeat its last value in each row";
 const INSPECT_HELP: &str = "`flagred inspect` shows how many values of a signal are known";
 
-/// A reason that names a motor, with the number of the motor, less 1, instead of its index.
+/// Replaces the index of the motor in a reason by the number of the motor minus 1; `None` if the reason does not name a
+/// motor.
 fn numbered(mut unknown: Unknown, flight: &Flight) -> Option<Unknown> {
     let (Unknown::NoCommand { motor } | Unknown::CommandOutside { motor, .. }) = &mut unknown
     else {
@@ -209,8 +211,8 @@ pub fn carried<'a>(flight: &Flight, names: &[&'a str]) -> Vec<&'a str> {
     names.filter(|name| flight.signal(name).is_some()).collect()
 }
 
-/// Calls `take` for every motor sample of a flight in order, with the latest value of each named signal; without motor
-/// commands, for every sample of these signals.
+/// Calls `take` for every motor sample of a flight in order, with the latest value of each named signal. If the flight
+/// has no motor commands, calls `take` at every time at which one of these signals has a value.
 pub fn for_each_sample(flight: &Flight, signals: &[&str], mut take: impl FnMut(&Sample<'_>)) {
     let mut holds: Vec<_> = signals
         .iter()

@@ -66,8 +66,8 @@ impl Moments {
         }
     }
 
-    /// The moments of the results of `counted`, each with weight 1; [`EMPTY`](Self::EMPTY) if one
-    /// value is not finite.
+    /// The moments of the values that `counted` returns, each with weight 1; [`EMPTY`](Self::EMPTY)
+    /// if one of them is not finite.
     pub(crate) fn alike(
         values: impl Iterator<Item = f64> + Clone,
         counted: impl Fn(f64) -> f64,
@@ -169,8 +169,8 @@ impl Moments {
         self.known(libm::sqrt(self.steps / self.weight / 2.0))
     }
 
-    /// The standard deviation without the [`noise`](Self::noise), `sqrt(max(0, std^2 - noise^2))`, from the part of the
-    /// variance that successive values share. `None` without a value.
+    /// The standard deviation without the [`noise`](Self::noise), `sqrt(max(0, std^2 - noise^2))`, which measures the
+    /// part of the variance that successive values share. `None` without a value.
     pub(crate) fn std_less_noise(&self) -> Option<f64> {
         let variance = (self.squares - self.steps / 2.0) / self.weight;
         self.known(libm::sqrt(variance.max(0.0)))

@@ -331,8 +331,8 @@ impl Monitor {
         Some(all)
     }
 
-    /// The beginning in seconds and the highest value in % of the open finding of the first risk, or of one that begins
-    /// if a threshold stays reached.
+    /// The beginning in seconds and the highest value in % of the open finding of the first risk, or of the finding
+    /// that will be opened if a threshold stays reached.
     pub(crate) fn peak_of_risk(&self) -> Option<(f64, f64)> {
         self.follower.peak_of_risk()
     }
@@ -420,7 +420,8 @@ impl Monitor {
         self.others.iter().for_each(|other| other.save(to));
     }
 
-    /// Sets the state of a monitor that was created like the one that saved it; `None` if it does not fit.
+    /// Restores the saved state of a monitor that was created in the same way as this one; `None` if the state does not
+    /// fit.
     pub(crate) fn load(&mut self, from: &mut Reader<'_>) -> Option<()> {
         let room = OwnedBuffers::load(from)?;
         let lengths = |of: &OwnedBuffers| (of.seen.len(), of.inputs.len(), of.motors.len());

@@ -180,7 +180,7 @@ fn opposite(factors: &[Factors], motor: usize) -> Option<usize> {
     nearest.map(|(opposite, _)| opposite)
 }
 
-/// Values of the motors without the part that commands yaw.
+/// The values of the motors, without the part that commands yaw.
 pub(crate) fn less_yaw(
     motors: &[Motor],
     value: impl Fn(&Motor) -> f64 + Copy,
@@ -237,7 +237,7 @@ pub fn counted(command: f64) -> f64 {
     }
 }
 
-/// Stores the effective command of each motor at `t_s`; missing ones are unknown.
+/// Stores the effective command of each motor at `t_s`; missing commands are unknown.
 pub(crate) fn take(motors: &mut [Motor], bin: &mut Bin, t_s: f64, commands: &[f64]) -> MotorTotals {
     let noise = bin.begin(t_s, motors);
     let commands = commands.iter().map(|command| counted(*command));

@@ -148,8 +148,8 @@ mod tests {
         );
     }
 
-    /// The rules of the paper conclude `strain`, whose value the output `risk` takes over through one rule for each
-    /// term.
+    /// The rules of the paper conclude the output `strain`. The output `risk` copies the value of `strain` by means
+    /// of one rule for each term.
     #[test]
     fn a_chain_has_a_plan_unless_it_reads_an_output_without_a_closed_form() {
         let profile = shipped::flagred_paper().profile().clone();

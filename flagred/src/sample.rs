@@ -119,16 +119,16 @@ pub enum Unknown {
 /// The conditions under which an input counts as known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sampling {
-    /// A gap between two samples that is longer than this, in seconds, resets the state.
+    /// The minimum number of samples that a window must contain before it counts.
     pub min_samples: u32,
     /// The time that a window must cover before it counts, in seconds, or its whole length if that is less; 99 % of it
     /// is enough.
     pub warm_up_s: f64,
-    /// A time without a sample longer than this, in seconds, resets the state.
+    /// A gap between two samples that is longer than this, in seconds, resets the state.
     pub longest_gap_s: f64,
-    /// The length of the take-off, in seconds. `warm_up_s` after it, the take-off is discarded from longer windows and
-    /// the elevated risk restarts, because the take-off is not typical of the flight. If this is 0, nothing is
-    /// discarded.
+    /// The length of the take-off, in seconds. When `warm_up_s` have passed after the take-off, it is discarded from
+    /// longer windows and the elevated risk restarts, because the take-off is not typical of the flight. If this is 0,
+    /// nothing is discarded.
     pub take_off_s: f64,
 }
 

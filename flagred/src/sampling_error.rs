@@ -1,11 +1,11 @@
-//! The sampling error of a mean over time: how far the mean of samples may be from the mean over the whole time that
-//! they cover.
+//! The sampling error of a mean over time: how far the mean of samples may be from the mean over the whole time
+//! that they cover.
 //!
-//! Samples of a signal over time are a systematic sample, and samples that follow each other are alike. So the error
-//! follows from the differences between successive samples and not from their standard deviation: a signal that moves
-//! slowly is known well between its samples, and noise is not. The estimator from successive differences is v2 of K.
-//! Wolter, "Introduction to Variance Estimation", chapter 8; the differences are those of J. von Neumann (1941). For
-//! independent values it is `s^2 / n`.
+//! Samples of a signal over time are a systematic sample, and samples that follow each other are alike. So the
+//! error follows from the differences between successive samples and not from their standard deviation: a slowly
+//! moving signal is well known between its samples, but noise is not. The estimator that uses successive
+//! differences is v2 in K. Wolter, "Introduction to Variance Estimation", chapter 8; such differences go back to
+//! J. von Neumann (1941). For independent values, the expected result is that of `s^2 / n`.
 
 use fuzzy::engine::Interval;
 
@@ -21,8 +21,8 @@ pub(crate) struct SampledMean {
 }
 
 impl SampledMean {
-    /// Computes the mean of values in order of time. Each value is given as its weight and the product of its weight
-    /// and itself. `None` if there are no values.
+    /// Computes the mean of values in order of time. Each item consists of the weight of a value, and the product of
+    /// weight and value. `None` if there are no values.
     pub(crate) fn of(values: impl Iterator<Item = (f64, f64)>) -> Option<SampledMean> {
         let (mut count, mut total, mut sum, mut squares) = (0_u32, 0.0, 0.0, 0.0);
         let mut before = None;

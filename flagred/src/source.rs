@@ -37,7 +37,8 @@ pub enum Signal {
     CommandNoise,
     /// Another signal of the flight by its name, such as `battery_v`.
     Named(String),
-    /// The difference `a - b` of two named signals. If both names end in `_deg`, it is the shorter way around, in [-180, 180).
+    /// The difference `a - b` of two named signals. If both names end in `_deg`, the signals are angles, and the
+    /// difference is taken the shorter way around, in [-180, 180).
     Difference {
         /// The minuend.
         a: String,
@@ -260,8 +261,9 @@ pub(crate) fn is_angle(name: &str) -> bool {
     name.ends_with("_deg")
 }
 
-/// The channels that sources need, shared between sources that observe the same signal, and the channel and statistic
-/// of each source. Named signals are identified by their index in `names`; the error is a name that is missing there.
+/// Returns the channels that sources need, and the channel and statistic of each source. Sources that observe the
+/// same signal share a channel. Named signals are identified by their index in `names`; the error is a name that
+/// `names` does not contain.
 pub(crate) fn channels<'a>(
     sources: impl IntoIterator<Item = &'a Source>,
     names: &[&str],

@@ -67,12 +67,12 @@ pub(crate) fn begin(description: &str) -> Vec<u8> {
     bytes
 }
 
-/// Ends a state.
+/// Ends a state with its checksum.
 pub(crate) fn end(bytes: &mut Vec<u8>) {
     checksum(bytes).save(bytes);
 }
 
-/// Opens a state that belongs to a monitor with this description.
+/// Checks that the bytes are the state of a monitor with this description, and returns a reader of the values in it.
 pub(crate) fn open<'a>(bytes: &'a [u8], description: &str) -> Result<Reader<'a>, StateError> {
     let bytes = bytes.strip_prefix(NAME).ok_or(StateError::Damaged)?;
     let mut from = Reader { bytes };

@@ -66,7 +66,7 @@ pub enum Measure {
     /// The shift of a motor's command, relative to the mean command of all motors, since earlier in the flight, in % of
     /// the range.
     Imbalance,
-    /// The difference between a motor and the opposite one, in % of the range.
+    /// The difference between the command of a motor and that of the opposite motor, in % of the range.
     PairImbalance,
     /// The shift of a motor's command if only the command of this motor is higher than earlier in the flight, in %
     /// of the range: the motor gives less thrust than commanded.
@@ -218,7 +218,7 @@ impl NoticeSettings {
 }
 
 impl VerdictSettings {
-    /// Calibrated on flights; see docs/validation.md.
+    /// The default settings, which were calibrated on flights; see docs/validation.md.
     pub const DEFAULT: VerdictSettings = {
         const fn threshold(risk: f64, elevated: f64) -> Threshold {
             Threshold {
@@ -271,7 +271,7 @@ pub struct Finding {
     pub raised_s: f64,
     /// The time at which the level was raised to FAIL, in seconds; `None` if it was not.
     pub failed_s: Option<f64>,
-    /// The time at which the level was last reached, in seconds. It is held for some time after that.
+    /// The time at which the level was last reached, in seconds. The level is held for some time after that.
     pub to_s: f64,
     /// The measure that reached the level first.
     pub measure: Measure,
@@ -333,7 +333,7 @@ impl Finding {
     };
 }
 
-/// The findings that end at one time: of the risk, the noise, the reserve and the balance.
+/// The findings that end at the same time: one each about the risk, the noise, the reserve and the balance.
 pub type EndedFindings = [Option<Finding>; 4];
 
 state! {

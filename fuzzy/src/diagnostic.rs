@@ -55,7 +55,7 @@ pub struct Diagnostic {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum Severity {
-    /// Information.
+    /// The finding is for information only; the model may be as intended.
     Note,
     /// The model works, but probably not as intended.
     Warning,
@@ -301,7 +301,7 @@ pub fn nearest<'a>(
     // The maximum length of a word that is compared: the time of a comparison grows with the
     // product of the lengths, and longer words are not typing errors.
     const LONGEST: usize = 64;
-    // Folds only ASCII letters, because tables for the other letters would add 20 kB in a browser.
+    // Folds only ASCII letters, because tables for the other letters would add 20 kB to the code for browsers.
     let fold = |s: &str| {
         s.chars()
             .map(|c| c.to_ascii_lowercase())
@@ -463,9 +463,9 @@ pub(crate) fn all_of(words: &[&str]) -> String {
 }
 
 pub(crate) fn listed(words: &[&str]) -> String {
-    const MOST: usize = 12;
+    const MAX_LISTED: usize = 12;
     let mut list = String::new();
-    for (i, word) in words.iter().take(MOST).enumerate() {
+    for (i, word) in words.iter().take(MAX_LISTED).enumerate() {
         if i > 0 {
             let last = i + 1 == words.len();
             list.push_str(if last { " and " } else { ", " });
@@ -474,9 +474,9 @@ pub(crate) fn listed(words: &[&str]) -> String {
         list.push_str(&quoted(word));
         list.push('`');
     }
-    if words.len() > MOST {
+    if words.len() > MAX_LISTED {
         list.push_str(" and ");
-        list.push_str(&(words.len() - MOST).to_string());
+        list.push_str(&(words.len() - MAX_LISTED).to_string());
         list.push_str(" more");
     }
     list

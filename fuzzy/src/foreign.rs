@@ -1,4 +1,4 @@
-//! Terms of other programs for shapes, operators, defuzzifiers, keys and hedges.
+//! Words of other programs for shapes, operators, defuzzifiers, keys and hedges.
 
 use alloc::{string::String, vec::Vec};
 

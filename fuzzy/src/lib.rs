@@ -1,7 +1,7 @@
 //! A fuzzy inference engine for Mamdani and Takagi-Sugeno rule sets, exact and without allocation in evaluation.
 //!
-//! A rule set is a text, or a [`Model`] built in code. An [`Engine`] is compiled from it once and is immutable. It
-//! evaluates inputs to outcomes: a value, or the information that no rule fires.
+//! A rule set is a text, or a [`Model`] built in code. An [`Engine`] is compiled from it once and is immutable.
+//! For given inputs it returns an outcome per output: a value, or the information that no rule fires.
 //!
 //! ```
 //! use fuzzy::{Engine, Model};

@@ -4,7 +4,8 @@
 //! vector instructions; selecting by a mask prevents it from branching per row. The operations of a row and their order
 //! do not depend on the number of rows, so the results are bitwise equal.
 
-/// Creates a number per row. Unlike [`core::array::from_fn`], this is inlined into functions for wide vectors.
+/// Returns an array with one number per row. Unlike [`core::array::from_fn`], this function is inlined into functions
+/// that use wide vectors.
 #[inline(always)]
 pub(crate) fn each<const L: usize>(mut of_row: impl FnMut(usize) -> f64) -> [f64; L] {
     let mut numbers = [0.0; L];

@@ -1,4 +1,4 @@
-//! Serialization of models and results. In results rules are numbered from 1, as in messages.
+//! Serialization of models and results. In results, rules are numbered from 1, as in messages.
 
 use alloc::string::ToString;
 
@@ -26,8 +26,9 @@ pub(crate) fn rule_numbers<S: Serializer>(
     serializer.collect_seq(indices.iter().map(|index| index + 1))
 }
 
-/// Serializes as `{value, state, coverage, dominant_rule, clamped}`. `value` and `dominant_rule` are null if there is
-/// no value or no rule fired. The outcome of interval type-2 terms also has `low` and `high`.
+/// Serializes as `{value, state, coverage, dominant_rule, clamped}`. `value` is null if there is no value, and
+/// `dominant_rule` is null if no rule fired. The outcome of an output with interval type-2 terms also has `low` and
+/// `high`.
 impl Serialize for Outcome {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let state = match self.state {

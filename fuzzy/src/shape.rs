@@ -375,13 +375,13 @@ impl MembershipFunction {
     /// The formula of each shape is documented at its variant. In addition:
     /// - At a vertical edge (`left = peak`, the ends of a rectangle, a step of a piecewise shape) the result is the
     ///   higher degree, so a triangle is 1 at its peak.
-    /// - At minus and plus infinity it is the limit.
-    /// - For NaN it is 0.
+    /// - At minus and plus infinity the result is the limit.
+    /// - For NaN the result is 0.
     /// - `Linear` is not a membership function; the result is 0. A `Constant` outside [0, 1] is clamped.
     ///
     /// Straight edges are computed as `(x - foot) / (top - foot)`, which is exactly 0 at the foot, exactly 1 at the
-    /// top, and accurate to the last bit near the foot. `exp`, `pow` and `cos` are those of `libm`, so the result for
-    /// an `x` is bitwise equal on every machine.
+    /// top, and accurate to the last bit near the foot. The exponential function is computed in this crate, and `pow`
+    /// and `cos` by `libm`, so the result for an `x` is bitwise equal on every machine.
     pub fn membership(&self, x: f64) -> f64 {
         match self {
             MembershipFunction::Piecewise { .. } if x.is_nan() => 0.0,

@@ -40,7 +40,7 @@ const MAX_BLOCKS: usize = 1000;
 const MAX_FINDINGS: usize = 1000;
 
 impl Document {
-    /// Validates the model, so that it can be compiled; `text` is the text that it was parsed from.
+    /// Validates the model: a valid model can be compiled. `text` is the text from which the model was parsed.
     ///
     /// # Errors
     /// The errors that [`validate`] finds, with line and column.

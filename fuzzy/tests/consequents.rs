@@ -71,7 +71,7 @@ fn plateaus_steps_and_infinity() {
         let output =
             format!("{{y: {{range: [0, 10], defuzzifier: tsukamoto, terms: {{t: {{{shape}}}}}}}}}");
         let model = model(&output, "[IF x IS high THEN y IS t]");
-        // `w z / w` rounds.
+        // By rounding, `w z / w` may differ from `z`.
         (value(&Engine::new(&model).unwrap(), w) * 1e12).round() / 1e12
     };
     // The value is the end of the slope, not the middle of the plateau.
@@ -111,7 +111,7 @@ fn tsukamoto_values_are_weighted_rule_by_rule() {
         assert!((up.unwrap().value.unwrap() - places[0]).abs() < 1e-14);
         assert_eq!(explained.outputs[0].value, Some(value(&engine, x)));
     }
-    // A rule counts however weakly it fires, down to the least strength.
+    // A rule counts however weakly it fires, as long as its strength is at least the minimum.
     assert_eq!(value(&engine, 1.0), 8.0);
     let only = Engine::new(&model(output, "[IF x IS high THEN y IS up]")).unwrap();
     assert!((value(&only, 1e-12) - 2.0).abs() < 1e-11);
@@ -221,7 +221,8 @@ rules: [IF x IS very low THEN y IS a, IF x IS high THEN y IS b]
         model
     );
     let engine = Engine::new(&model).unwrap();
-    // A parabola is symmetric, and the step from 2 to 3 is centred at 2.5; clamped to [0, 1] they are degrees.
+    // The values are the axes of symmetry of the terms: 3 for the parabola, and 2.5 for the step from 2 to 3. Formulas
+    // are clamped to [0, 1], so the results are degrees.
     let low = engine.evaluate(&[1.0]).unwrap()[0];
     assert!((low.value().unwrap() - 3.0).abs() < 1e-12);
     assert_eq!(low.coverage, 0.75 * 0.75);
@@ -230,7 +231,7 @@ rules: [IF x IS very low THEN y IS a, IF x IS high THEN y IS b]
     assert!((high.coverage - 0.9 * (-0.5_f64).exp()).abs() < 1e-15);
     let terms = &engine.explain(&[5.0]).unwrap().inputs[0].terms;
     assert_eq!(terms[0].degree, 0.0);
-    // y (6 - y) / 9 scaled by 0.75 has the same centroid; the asymmetric part is computed by its integral.
+    // The term y^2 / 36 is asymmetric; by its integrals, the centroid over [0, 6] is 4.5. Scaling does not move it.
     let text = text.replace("y * (6 - y) / 9", "y^2 / 36");
     let text = text.replace("rules:", "operators: {implication: product}\nrules:");
     let engine = Engine::new(&text.parse().unwrap()).unwrap();

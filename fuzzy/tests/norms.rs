@@ -228,7 +228,7 @@ fn norms_have_integrals_computed_by_hand() {
     let (left, right) = (0.125, 0.0625);
     let moment = 2.0 + 0.5 * 5.0 - left * (3.0 + 1.0 / 3.0) - right * (3.0 + 2.0 / 3.0) + 3.5;
     near(drastic, moment / (1.0 + 0.5 - left - right + 1.0));
-    // The ramp m and the constant 0.75: the larger one where m is below 0.25, and 1 beyond.
+    // The larger of the ramp m and the constant 0.75 where m is below 0.25, and 1 beyond.
     let nilpotent = centroid(
         "a: {right_shoulder: [0, 10]}, b: {rectangle: [0, 10]}",
         "IF x IS high THEN y IS a, IF x IS high THEN y IS b WITH 0.75",

@@ -1,5 +1,5 @@
-//! Tests of a rule set inside another program's configuration, which is read by the YAML organisation's serde crate,
-//! and a comparison of that crate with our reader.
+//! Tests of a rule set inside the configuration of another program, which is read by the serde crate of the YAML
+//! organisation, and a comparison of that crate with the YAML parser of this package.
 #![allow(clippy::unwrap_used, reason = "a test")]
 
 use std::{
@@ -160,7 +160,7 @@ fn both_parsers_read_every_rule_set_alike() {
     );
 }
 
-/// Tests texts that the two readers treat differently.
+/// Tests texts that this parser and serde treat differently.
 #[test]
 fn tags_duplicates_and_numbers_are_handled() {
     let rule_set = |name: &str| {
@@ -172,7 +172,7 @@ fn tags_duplicates_and_numbers_are_handled() {
     let ours = |text: &str| text.parse::<Model>().map(|model| model.name);
     let theirs = |text: &str| serde_yaml::from_str::<Model>(text).map(|model| model.name);
 
-    // Here, a name that looks like a number is read as written; serde passes it as a number.
+    // This parser keeps a name that looks like a number as it is written; serde passes it on as a number.
     let number = rule_set("1.50");
     assert_eq!(
         (ours(&number).unwrap(), theirs(&number).unwrap()),
@@ -305,7 +305,7 @@ fn sorted_mappings_of_earlier_versions_are_still_read() {
     let mut text = UNSORTED.replace("{none: 1, much: 9}", "{much: 9, none: 1}");
     let document = yaml::parse(&text).unwrap();
     assert_eq!(document.model, UNSORTED.parse::<Model>().unwrap());
-    // In a text, the unsorted order may be a mistake.
+    // In a text written by a person, the unsorted order may be a mistake.
     assert_eq!(document.warnings.0[0].code, "inverted-parameters");
     assert_eq!(document.warnings.0.len(), 1);
     text = text.replace("much: 9", "much: 1");
@@ -326,8 +326,8 @@ fn steps_survive_formats_without_null_and_with_sorted_keys() {
     let steps = r#""steps":[{"name":"zero","below":0},{"name":"fine","below":36},{"name":"over"}]"#;
     assert!(json.contains(steps), "{json}");
     assert_eq!(serde_json::from_str::<Model>(&json).unwrap(), model);
-    // With sorted keys, the order of the terms follows from the limits. In a text, this order is an error, because it
-    // may be a mistake.
+    // With sorted keys, the order of the terms follows from the limits. In a text written by a person, this order is
+    // an error, because it may be a mistake.
     let sorted = json.replace(steps, r#""steps":{"fine":36,"over":null,"zero":0}"#);
     assert_eq!(serde_json::from_str::<Model>(&sorted).unwrap(), model);
     let sorted = text.replace("{zero: 0, fine: 36, over: }", "{fine: 36, over: , zero: 0}");

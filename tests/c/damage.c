@@ -35,7 +35,7 @@ static const struct { size_t field, size; } arrays[] = {
     RULES(dimensions), RULES(cells), RULES(nodes), RULES(edges), RULES(actions), RULES(programs), RULES(steps),
     RULES(blocks), RULES(outputs), RULES(pairs), RULES(layered_sets), RULES(bases), RULES(layers), RULES(moments),
     RULES(consequents), RULES(coefficients), RULES(sets), RULES(set_terms), RULES(sections), RULES(strands), RULES(flanks),
-    RULES(knots), RULES(stages), RULES(places),
+    RULES(knots), RULES(stages), RULES(indices),
     ARRAY(order), ARRAY(channels), ARRAY(sources), ARRAY(coordinates), ARRAY(first_coordinates), ARRAY(values),
     ARRAY(distances), ARRAY(propositions),
 };

@@ -1028,16 +1028,16 @@ return load_all, 1000
 --   return until_risk and risk and min(until_risk, risk) or until_risk
 -- end
 -- 
--- doubt_us = nil -- after an alarm: how long the motors have worked as before it
+-- ok_us = nil -- after an alarm: how long the motors have worked as before it
 -- 
 -- -- After an alarm, the level is GOOD again once the motors have worked as before it for the time after which a level is cleared.
--- local function doubt()
---   local is_back = true
---   is_back = works_as_before()
---   if (risk_level > 0 or doubt_us) and not is_back then
---     doubt_us = 0
---   elseif risk_level == 0 and doubt_us and doubt_us >= 5000000 then
---     doubt_us = nil
+-- local function check_recovery()
+--   local ok = true
+--   ok = works_as_before()
+--   if (risk_level > 0 or ok_us) and not ok then
+--     ok_us = 0
+--   elseif risk_level == 0 and ok_us and ok_us >= 5000000 then
+--     ok_us = nil
 --   end
 -- end
 -- 
@@ -1054,7 +1054,7 @@ return load_all, 1000
 --     risk_level, held_at = held, clock_us
 --     is_open = held > 0
 --   end
---   doubt()
+--   check_recovery()
 -- end
 -- 
 -- function stop_judging()
@@ -1122,7 +1122,7 @@ return load_all, 1000
 -- unbalanced, or_unbalanced = nil, nil -- the unbalanced motor, and a second one that may be it instead
 -- weak, weak_motor, or_weak = nil, nil, nil -- the extra command of a weak motor in %, the motor, and a second one that may be it
 -- sinks = false
--- local is_back = false
+-- local ok = false
 -- 
 -- -- The weight of this call in an average.
 -- local function weight(known_s, constant_s)
@@ -1229,10 +1229,10 @@ return load_all, 1000
 --   end
 --   learn(mean)
 --   local settled, learned = lately_s >= 5.0, trim_s >= 10.0
---   if risk_level == 0 and not doubt_us and (not learned or settled and is_near(lately, trims, 0.15 / 2)) then
+--   if risk_level == 0 and not ok_us and (not learned or settled and is_near(lately, trims, 0.15 / 2)) then
 --     learn_trims(mean)
 --   end
---   is_back = settled and (learned and is_near(lately, trims, 0.15 / 2) or not learned and is_near(lately, nil, 0.15))
+--   ok = settled and (learned and is_near(lately, trims, 0.15 / 2) or not learned and is_near(lately, nil, 0.15))
 --   local squares = 0.0
 --   for i = 1, motors do
 --     shifts[i] = lately[i] - trims[i]
@@ -1279,7 +1279,7 @@ return load_all, 1000
 -- 
 -- -- Whether all motors work as before the alarm; if no trims were learned before it, whether all motors work alike.
 -- function works_as_before()
---   return is_back
+--   return ok
 -- end
 -- 
 -- -- Forgets the trims, because a new flight may begin.
@@ -1291,7 +1291,7 @@ return load_all, 1000
 -- 
 -- function forget_balance()
 --   lately, at_zero, lately_s, load, load_s = {}, {}, 0.0, 0.0, 0.0
---   imbalance_us, weak_us, imbalance, weak, sinks, is_back = nil, nil, nil, nil, false, false
+--   imbalance_us, weak_us, imbalance, weak, sinks, ok = nil, nil, nil, nil, false, false
 -- end
 -- 
 -- -- A flight.
@@ -1304,7 +1304,7 @@ return load_all, 1000
 -- falls = false -- whether the motors idle in the air
 -- local since_high_us, unknown_us -- time since the risk was last high, and since it was last known
 -- 
--- -- Resets the state after a flight or a gap. After a gap in the air, the trims are kept, and an alarm stays as a doubt.
+-- -- Resets the state after a flight or a gap. After a gap in the air, the trims are kept, and an alarm lasts until recovery.
 -- function forget(is_gap)
 --   lifted_us = not is_gap and lifted_us or nil
 --   local was_alarm = is_gap and level_now() > 0
@@ -1315,7 +1315,7 @@ return load_all, 1000
 --   value = {}
 --   forget_notices()
 --   stop_judging()
---   doubt_us = was_alarm and 0 or nil
+--   ok_us = was_alarm and 0 or nil
 --   if not is_gap then
 --     forget_trims()
 --   end
@@ -1385,7 +1385,7 @@ return load_all, 1000
 --   end
 --   since_high_us = since_high_us and later(since_high_us, held_us)
 --   unknown_us = unknown_us and later(unknown_us, held_us)
---   doubt_us = doubt_us and later(doubt_us, held_us)
+--   ok_us = ok_us and later(ok_us, held_us)
 --   flown_us = flown_us and later(flown_us, held_us)
 --   lifted_us = lifted_us and later(lifted_us, held_us)
 --   read_commands()
@@ -1398,7 +1398,7 @@ return load_all, 1000
 --       end
 --     else
 --       -- The vehicle may have landed during a gap.
---       doubt_us = nil
+--       ok_us = nil
 --       forget_trims()
 --     end
 --     return nil
@@ -1417,7 +1417,7 @@ return load_all, 1000
 --   risk = falls and 100.0 or risk
 --   if not risk then
 --     if unknown_us and unknown_us > 2000000 then
---       doubt_us = level_now() > 0 and unknown_us or nil
+--       ok_us = level_now() > 0 and unknown_us or nil
 --       stop_judging()
 --       unknown_us = nil
 --     end
@@ -1566,7 +1566,7 @@ return load_all, 1000
 --   local level = risk_level
 --   level = little_reserve and max(level, 2) or level
 --   level = (imbalance or weak) and max(level, 2) or level
---   return doubt_us and max(level, 2) or level
+--   return ok_us and max(level, 2) or level
 -- end
 -- 
 -- -- The cause in two parts; if there is no space for the second part, the first part is used alone.

@@ -126,7 +126,7 @@ struct Candidate {
     tuned: Votes,
     /// The risk of each row in %, by rules tuned without its vehicle.
     unknown: Vec<f64>,
-    /// The rules that were tuned without a fold, for each fold.
+    /// For each fold, the rules that were tuned without its vehicles.
     left_out: Vec<Votes>,
 }
 
@@ -146,7 +146,8 @@ impl Candidate {
         })
     }
 
-    /// The rule set, after verifying that the engine gives the same risks and that there is no gap for a monitor to fill.
+    /// Returns the rule set, after verifying that the engine gives the same risks and that the rules leave no gap for a
+    /// monitor to fill.
     fn rule_set(&self) -> Result<fuzzy::Model> {
         let model = self.tuned.rule_set(&self.rows);
         let engine = fuzzy::Engine::new(&model)?;

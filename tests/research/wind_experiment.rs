@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Time in seconds and risk in %, where it is known.
+/// Returns the times in seconds at which the risk is known, each with the risk in %.
 fn risks(flight: &Flight) -> Result<Vec<(f64, f64)>, Box<dyn Error>> {
     let estimator = shipped::flagred();
     let mut monitor = Monitor::new(&estimator, Craft::new(flight.motors.len()))?;
@@ -75,7 +75,7 @@ fn draw(flight: &Flight, risks: &[(f64, f64)]) -> String {
         (risks, 100.0, "#d55e00"),
     ] {
         svg.push_str("<polyline points=\"");
-        // Five points per second exceed the resolution of the picture.
+        // Five points per second are finer than the resolution of the picture.
         let mut next_s = f64::NEG_INFINITY;
         for (t_s, value) in points {
             if *t_s < next_s {

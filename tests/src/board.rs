@@ -1,4 +1,4 @@
-//! Profiles and flights for tests of on-board monitors, and their updates as text.
+//! Profiles and flights for tests of on-board monitors, and the updates of these monitors as text.
 
 use std::{fmt::Write, path::PathBuf};
 
@@ -101,7 +101,8 @@ pub fn logs() -> Vec<PathBuf> {
     logs
 }
 
-/// The factors of the motors of a flight; if they are unknown, those of motors on a circle.
+/// Returns the factors of the motors of a flight; if they are unknown, returns the factors of motors that are
+/// arranged on a circle.
 ///
 /// # Panics
 ///

@@ -1,4 +1,4 @@
-//! Small writers of flight logs, for layouts for which no real log may be redistributed.
+//! Small writers of flight logs, for log layouts of which no real log may be redistributed.
 
 /// A value of a field.
 #[derive(Debug, Clone, Copy)]

@@ -28,7 +28,7 @@ const HORIZON_S: f64 = 5.0;
 pub struct SimulatedFlight {
     /// The identifier, such as `f000`.
     pub id: String,
-    /// The vehicle; two names of one craft are merged.
+    /// The vehicle; a craft that has two names counts as one vehicle.
     pub vehicle: String,
     /// `gusts`, `rising`, `calm`, `fault` or `manoeuvre`.
     pub kind: String,
@@ -36,10 +36,10 @@ pub struct SimulatedFlight {
     pub judged: Span,
     /// The attitude error.
     pub errors: ErrorRecord,
-    /// The time at which the flight ended by a loss of control in the air, in seconds; `None` if it
-    /// did not.
+    /// The time of the loss of control that ended the flight in the air, in seconds; `None` if
+    /// control was not lost.
     pub lost_s: Option<f64>,
-    /// The times of the steps, and whether the error becomes critical after each.
+    /// The times of the steps, and for each step whether the error becomes critical within the prediction horizon.
     pub steps: Vec<(f64, bool)>,
     /// The events during the flight: time in seconds, event, time constant of the wind in seconds.
     pub events: Vec<(f64, String, f64)>,
@@ -51,7 +51,7 @@ pub struct SimulatedFlight {
 pub struct Replay {
     /// Use only every n-th motor sample.
     pub every: usize,
-    /// Errors of the lower and upper limit of the effective range.
+    /// The errors that are added to the lower and the upper limit of the effective range.
     pub wrong_by: (f64, f64),
 }
 
@@ -71,7 +71,7 @@ pub struct ProfileRun {
     pub warnings: Vec<Span>,
 }
 
-/// Returns the vehicle with the given name; one craft has two names.
+/// Returns the vehicle with the given name. One craft has two names, which are mapped to the same vehicle.
 pub fn vehicle(name: &str) -> String {
     name.replace("lin_tw125_z12", "lin_c80_z12")
 }
@@ -156,7 +156,7 @@ fn read(path: &Path) -> SimulatedFlight {
 }
 
 impl SimulatedFlight {
-    /// The largest error after a time, within the horizon of the steps, in degrees.
+    /// The largest error after a time, within the prediction horizon of a step, in degrees.
     pub fn error_ahead_deg(&self, t_s: f64) -> f64 {
         self.errors
             .largest_within(t_s, HORIZON_S)

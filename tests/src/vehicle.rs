@@ -48,8 +48,8 @@ pub struct StandIn {
     pub heard_elsewhere: Inbox,
     /// For each motor command, its time on the vehicle's clock in ms, and the moment at which it was sent.
     pub sent: Vec<(u32, Instant)>,
-    /// The progress of the other side. A flight at full speed waits for it, because the buffers of the machine would lose
-    /// packets.
+    /// The progress of the other side. A flight at full speed waits for it, because otherwise the buffers of the
+    /// machine would overflow and packets would be lost.
     pub progress: Option<Arc<Progress>>,
     /// The number of flights whose end has been marked.
     marks: u8,
@@ -61,7 +61,7 @@ pub struct StandIn {
     /// command.
     pub look_every: Duration,
     requested: bool,
-    /// The minimum interval of motor commands.
+    /// The minimum interval between motor commands.
     pub every: Duration,
     /// Whether the vehicle sends motor commands at the rate that the other side requests.
     pub obeys: bool,
@@ -220,7 +220,7 @@ impl StandIn {
             assert!(start.elapsed() < TIMEOUT, "the flight is not followed");
             self.linger(Duration::from_millis(2));
         }
-        // The last messages are still on their way.
+        // Waits briefly, because the last messages are still on their way.
         self.linger(Duration::from_millis(20));
     }
 
@@ -261,7 +261,7 @@ impl StandIn {
         self.stream = Stream::with_key(key.clone());
     }
 
-    /// The packets of the other side that it could not decode.
+    /// The numbers of packets from the other side that the vehicle could not decode.
     pub fn skipped(&self) -> SkipCounts {
         self.stream.skipped()
     }
@@ -271,12 +271,12 @@ impl StandIn {
         self.other = Some((wire, Stream::new()));
     }
 
-    /// Continues from another address.
+    /// Continues to send from another address.
     pub fn move_to(&mut self, wire: Wire) {
         self.wire = wire;
     }
 
-    /// Sends a message as another component of its system.
+    /// Sends a message as another component of the vehicle's system.
     pub fn say_as(&mut self, component: u8, message: &MavMessage) {
         let packet = Sender::new(component).packet(self.version, self.system, message);
         self.transmit(&packet);

@@ -163,7 +163,7 @@ fn the_modules_of_a_package_form_no_cycle() {
             let others: Vec<String> = others.map(str::to_owned).collect();
             uses.entry(here).or_default().extend(others);
         }
-        // Remove modules that use only removed ones until none is left.
+        // Repeatedly remove the modules that use only removed modules, until no module is left.
         while !uses.is_empty() {
             let left: Vec<String> = uses.keys().cloned().collect();
             uses.retain(|_, used| used.iter().any(|name| left.contains(name)));

@@ -1,5 +1,5 @@
-//! Inputs of any size: memory and time are bounded, and omissions are reported. Inputs are generated while they are read; nothing
-//! large is stored.
+//! Inputs of any size: memory and time are bounded, and the program reports what it omits. Inputs are generated while
+//! they are read; nothing large is stored.
 
 use std::{
     fs,
@@ -14,7 +14,7 @@ use flagred_tests::{
 };
 use serde_json::Value as Json;
 
-/// The maximum virtual memory of a call, in kB; threads and libraries reserve most of it, but never use it.
+/// The maximum virtual memory of a call, in kB. Most of it is only reserved by threads and libraries, and never used.
 #[cfg(unix)]
 const MEMORY_KB: u64 = 1_200_000;
 

@@ -78,7 +78,7 @@ fn help_names_every_command() {
     assert!(String::from_utf8_lossy(&output.stdout).contains("assess"));
 }
 
-/// Completions and manual pages are generated from the definitions of the help, so each of them names every command.
+/// No rules must be learned from an incomplete flight, so `dataset` refuses it.
 #[test]
 fn completions_and_manual_name_every_command() {
     let commands = [

@@ -164,7 +164,7 @@ fn run_console(copy: &RepositoryCopy, block: &Block) -> (String, Vec<String>) {
     (text, wrong)
 }
 
-/// A YAML block is a rule set, a profile, or a part of one.
+/// Checks that a YAML block is a rule set, a profile, or a part of one of them.
 fn check_yaml(copy: &RepositoryCopy, block: &Block) -> Result<(), String> {
     let named = block
         .text

@@ -295,7 +295,7 @@ fn a_full_disk_leaves_the_old_file_and_exits_with_2() {
     }
 }
 
-/// An incomplete table must not pass for a complete one.
+/// An incomplete table must not be mistaken for a complete one.
 #[test]
 fn a_full_disk_behind_standard_output_exits_with_2() {
     for arguments in [

@@ -1,11 +1,13 @@
 //! Scores of tuned rules on held-out vehicles.
 //!
-//! Each real vehicle is a fold, and the simulated ones are distributed over these folds. For each fold, the rules are tuned on
-//! the rows of all others, exactly as `scripts/learn-flagred` tunes them on all, and compute the risks of the held-out vehicles.
-//! The inputs, the windows and the thresholds of the verdict stay the same: they were chosen on these vehicles, so the figures
-//! are slightly optimistic.
+//! Each real vehicle is a fold, and the simulated ones are distributed over these folds. For each fold, the rules
+//! are tuned on the rows of all other folds, by the same method that `scripts/learn-flagred` applies to the rows
+//! of all vehicles. The tuned rules then give the risks of the held-out vehicles. The inputs, the windows and the
+//! thresholds of the verdict stay the same: they were chosen on these vehicles, so the figures are slightly
+//! optimistic.
 //!
-//! `FLAGRED_SHARED=... cargo test -p flagred-tests --test leave_vehicles_out -- --ignored --nocapture` prints the figures.
+//! `FLAGRED_SHARED=... cargo test -p flagred-tests --test leave_vehicles_out -- --ignored --nocapture` prints the
+//! figures.
 
 use std::{fs, path::Path, process::Command};
 
@@ -20,7 +22,7 @@ use flagred_tests::{
     },
 };
 
-/// The required minimum of each of [`AREAS`].
+/// The minimum area under the ROC curve that is required for each of [`AREAS`].
 const LEAST: [f64; 8] = [0.86, 0.70, 0.87, 0.73, 0.83, 0.69, 0.85, 0.84];
 
 #[test]

@@ -33,7 +33,7 @@ fn run(arguments: &[&str]) -> Output {
     output
 }
 
-/// Asserts that a call ends with exit code 3 and prints `said` on standard error.
+/// Asserts that a call ends with exit code 3 and that its standard error contains `message`.
 fn refused(arguments: &[&str], message: &str) {
     let output = run(arguments);
     let reported = String::from_utf8(output.stderr).unwrap();
@@ -208,7 +208,7 @@ fn rows_headers_and_columns_of_a_flight_csv_are_bounded() {
     refused(&["inspect", &twice], "the column `a` occurs twice");
 }
 
-/// One damaged time must not make all later times go back.
+/// A single damaged time must not make all later times count as times that go back.
 #[test]
 fn a_time_of_another_millennium_loses_only_its_row() {
     let folder = Folder::new();

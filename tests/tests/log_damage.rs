@@ -1,4 +1,4 @@
-//! Damaged logs are read as far as possible. `mutations.rs` damages many more.
+//! Damaged logs are read as far as possible. `mutations.rs` tests many more damaged logs.
 
 use flagred::{flight::Verdict, log::assess, shipped};
 use flagred_flightlog::Options;

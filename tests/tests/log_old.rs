@@ -164,7 +164,7 @@ fn the_report_does_not_depend_on_the_kept_signals() {
     }
 }
 
-/// ArduCopter 3.1 describes MOT messages in every log, and writes them where bit 10 of LOG_BITMASK is set.
+/// ArduCopter 3.1 describes MOT messages in every log, but writes them only if bit 10 of LOG_BITMASK is set.
 #[test]
 fn the_bitmask_reports_motors_that_were_not_logged() {
     let gap = |mask: f64| {

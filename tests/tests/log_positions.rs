@@ -1,4 +1,5 @@
-//! Positions in logs of each format: read where they are known, unknown before the first fix, absent without one.
+//! Positions in logs of each format. They are read where they are known; they are unknown before the first fix, and
+//! missing if there is no fix.
 
 use flagred_flightlog::{Flight, Options};
 use flagred_tests::log_writer::{DataFlash, GLOBAL_POSITION_INT, HEARTBEAT, Tlog, ULog};

@@ -1,4 +1,4 @@
-//! A telemetry log and a live link interpret a vehicle alike: both receive the same messages.
+//! The readers of telemetry logs and of live links interpret a vehicle alike: both receive the same messages.
 
 use flagred_flightlog::{
     Flight, Options,

@@ -385,7 +385,7 @@ fn a_rule_set_of_another_program_has_findings_and_is_not_formatted() {
     editor.end();
 }
 
-/// A length that exceeds any memory, a message that is too long, and an invalid one: the next message is read anyway.
+/// The next message is read after a length that exceeds any memory, a message that is too long, and an invalid message.
 #[test]
 fn a_message_that_is_too_long_is_skipped() {
     let mut editor = Editor::new(&[]);

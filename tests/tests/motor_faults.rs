@@ -189,7 +189,7 @@ const QUAD: [Factors; 4] = [
     [1.0, 1.0, -1.0],
     [-1.0, -1.0, -1.0],
 ];
-/// Plus layout: front, rear, then clockwise from the left rear motor.
+/// Plus layout: front, rear, left rear, right front, left front, right rear.
 const HEXA: [Factors; 6] = [
     [0.0, 1.0, -1.0],
     [0.0, -1.0, 1.0],

@@ -18,7 +18,7 @@ use flagred_tests::{
     writing::{RULES, wild_flight},
 };
 
-/// The exit code and errors of a command whose reader takes `read` bytes of its output, or the whole output.
+/// The exit code and errors of a command whose reader reads only `read` bytes of its output, or the whole output.
 fn ended(arguments: &[&str], read: Option<usize>) -> (Option<i32>, String) {
     let mut child = flagred()
         .args(arguments)

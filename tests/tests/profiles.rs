@@ -479,7 +479,7 @@ fn a_risk_without_its_signal_is_named_beside_the_findings_of_another_risk() {
     );
 }
 
-/// The battery level is in one row of 25.
+/// Only one of every 25 rows contains the battery level.
 #[test]
 fn a_slow_signal_with_empty_cells_is_unknown_and_the_help_names_the_remedy() {
     let folder = Folder::new();

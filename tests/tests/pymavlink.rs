@@ -20,7 +20,7 @@ struct ChildProcess(Child);
 
 impl Drop for ChildProcess {
     fn drop(&mut self) {
-        // Errors are ignored: it may have ended already.
+        // Errors are ignored, because the process may have ended already.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }

@@ -215,7 +215,7 @@ const SOURCES: [(f64, &str); 22] = [
     ),
 ];
 
-/// A profile with each source, and a rule set that uses each.
+/// A profile that contains each of these sources, and a rule set that uses all of them.
 fn of_sources() -> Estimator {
     let (mut inputs, mut sources, mut rules) = (String::new(), String::new(), String::new());
     for (i, (end, source)) in SOURCES.iter().enumerate() {

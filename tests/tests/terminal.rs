@@ -92,7 +92,7 @@ fn nothing_from_outside_acts_on_a_terminal() {
     }
 }
 
-/// Spreadsheets compute cells that begin with `=`, `+`, `-` or `@`.
+/// Spreadsheets evaluate cells that begin with `=`, `+`, `-` or `@` as formulas.
 #[test]
 fn no_cell_of_a_table_is_a_formula() {
     let folder = Folder::new();

@@ -39,7 +39,7 @@ fn compare(kind: OutputTermKind, count: usize, samples: usize, tolerance: f64) -
             };
             let mut worst_here = error(expected);
             if worst_here > tolerance {
-                // With ten times as many samples, the error of the sums is a hundredth.
+                // With ten times as many samples, the error of the sums is a hundred times smaller.
                 let finer = type2::interval(&model, output, point, 10 * samples);
                 worst_here = error(finer.unwrap());
             }

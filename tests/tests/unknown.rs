@@ -1,4 +1,4 @@
-//! If a log lacks motors or the end of a flight, the verdict is never GOOD, with any reader.
+//! If a log lacks motors or the end of a flight, the verdict is never GOOD, whatever the format of the log.
 
 use std::fmt::Write as _;
 

@@ -34,7 +34,7 @@ const TROUBLED: usize = 123;
 /// The vehicle that is silent in the second half.
 const SILENT: usize = 321;
 
-/// The moment at which commands were sent, by the vehicle and its clock in ms.
+/// The moment at which each command was sent. The keys are the vehicle and its clock in ms.
 type SendTimes = Arc<Mutex<HashMap<(usize, u32), Instant>>>;
 
 /// All lines of the watch, the delay of each risk, and resource figures.

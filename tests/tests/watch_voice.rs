@@ -17,7 +17,7 @@ fn late_ms(seconds: f64) -> Vec<f64> {
     let mut vehicle = watch.vehicle(&flight, Link::default());
     vehicle.look_every = Duration::from_micros(200);
     vehicle.meet();
-    // The log has 25 Hz, so it is replayed at twice the speed.
+    // The log has a rate of 25 Hz, so it is replayed at twice the speed.
     let air = flight.in_air.as_ref().unwrap().spans[0];
     let end_s = air.start_s + 2.0 * seconds;
     assert!(end_s <= air.end_s, "the flight is too short");

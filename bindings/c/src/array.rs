@@ -23,7 +23,7 @@ impl<T> Array<T> {
         if self.items.is_null() || !self.items.is_aligned() {
             return Err(Status::NullPointer);
         }
-        // No object is larger than `isize::MAX` bytes, so a larger count is damaged.
+        // No object is larger than `isize::MAX` bytes, so a larger count can only come from damaged data.
         let bytes = self.count.checked_mul(size_of::<T>());
         if bytes.is_none_or(|bytes| bytes > isize::MAX as usize) {
             return Err(Status::DamagedPlan);

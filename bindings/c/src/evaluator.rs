@@ -7,11 +7,11 @@ use flagred::board::{
 
 use crate::{array::Array, memory::Block, rules::Rules, status::Status};
 
-/// `struct flagred_evaluator`.
+/// An evaluator of a rule set: `struct flagred_evaluator` in C.
 #[derive(Debug)]
 pub(crate) struct CEvaluator(Evaluator<'static>);
 
-/// `struct flagred_outcome`.
+/// The outcome of one output: `struct flagred_outcome` in C.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub(crate) struct COutcome {

@@ -31,7 +31,7 @@ use plan::Plan;
 use status::Status;
 use update::{ENDED, Finding, Update, findings};
 
-/// `struct flagred_limits`.
+/// The limits of a motor: `struct flagred_limits` in C.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub struct Limits {
@@ -39,7 +39,7 @@ pub struct Limits {
     high: f64,
 }
 
-/// `struct flagred_sample`.
+/// A sample of a flight: `struct flagred_sample` in C.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub struct CSample {
@@ -49,7 +49,7 @@ pub struct CSample {
     in_air: i32,
 }
 
-/// `struct flagred_monitor`.
+/// A monitor of a flight: `struct flagred_monitor` in C.
 #[derive(Debug)]
 pub struct CMonitor {
     monitor: Monitor<'static>,
@@ -314,7 +314,7 @@ pub unsafe extern "C" fn flagred_evaluate(
     Status::Ok as i32
 }
 
-/// Stops the processor after a panic, which is a bug of this library.
+/// Halts in an endless loop after a panic. A panic is a bug in this library.
 #[cfg(not(feature = "std"))]
 #[panic_handler]
 fn stop(_: &core::panic::PanicInfo<'_>) -> ! {

@@ -88,7 +88,7 @@ struct CSettings {
     min_samples: u32,
 }
 
-/// `struct flagred_plan`.
+/// An exported plan: `struct flagred_plan` in C.
 #[derive(Debug)]
 #[repr(C)]
 pub struct Plan {

@@ -17,7 +17,7 @@ pub(crate) const FORMAT: u32 = 11;
 
 macro_rules! define {
     ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {
-        /// `struct flagred_rules`.
+        /// An exported rule set: `struct flagred_rules` in C.
         #[derive(Debug)]
         #[repr(C)]
         pub(crate) struct Rules {

@@ -2,7 +2,7 @@
 
 use core::ffi::CStr;
 
-/// `enum flagred_status`.
+/// A status code: `enum flagred_status` in C.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Status {
     Ok = 0,

@@ -6,10 +6,10 @@ use flagred::{
     verdict::{self, Cause, EndedFindings, Level},
 };
 
-/// `FLAGRED_ENDED`: the number of findings that can end at one time.
+/// The maximum number of findings that can end at one time: `FLAGRED_ENDED` in C.
 pub(crate) const ENDED: usize = 4;
 
-/// `struct flagred_finding`.
+/// A finding: `struct flagred_finding` in C.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub struct Finding {
@@ -32,7 +32,7 @@ pub struct Finding {
     cause_input: i32,
 }
 
-/// `struct flagred_update`.
+/// The state of a monitor after a sample: `struct flagred_update` in C.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub struct Update {

@@ -1,6 +1,6 @@
-//! Arrow's C interface in Python capsules: import of tables of other libraries, export of our own.
+//! Arrow's C interface in Python capsules: imports tables from other libraries and exports our own tables.
 //!
-//! The only file of this package with unsafe code: a capsule is a pointer to a C struct.
+//! This is the only file of this package with unsafe code: a capsule contains a pointer to a C struct.
 #![allow(unsafe_code)]
 
 use std::{
@@ -46,7 +46,7 @@ pub(crate) fn export(
     PyCapsule::new_with_value(py, ExportedStream(stream), c"arrow_array_stream")
 }
 
-/// A table of another library.
+/// A table from another library.
 pub(crate) struct ForeignTable {
     fields: Fields,
     source: Source,
@@ -58,7 +58,7 @@ enum Source {
     Batch(Option<StructArray>),
 }
 
-/// Imports a table of another library.
+/// Imports a table from another library.
 ///
 /// # Errors
 /// The value is not a table, or its capsules violate Arrow's protocol.
@@ -182,7 +182,8 @@ fn last_error(stream: &mut FFI_ArrowArrayStream, code: i32) -> String {
 
 struct PanicError;
 
-/// Runs a function that may panic, without a message on standard error: the caller reports its own error.
+/// Runs a function that may panic, and returns a panic as an error. The panic message is not printed to standard error,
+/// because the caller reports its own error.
 fn catch_panic<T>(run: impl FnOnce() -> T) -> Result<T, PanicError> {
     thread_local! {
         static IS_SILENT: Cell<bool> = const { Cell::new(false) };
@@ -202,7 +203,7 @@ fn catch_panic<T>(run: impl FnOnce() -> T) -> Result<T, PanicError> {
     done.map_err(|_| PanicError)
 }
 
-/// The columns of a table.
+/// Converts an Arrow schema to the columns of a table.
 fn fields(schema: &FFI_ArrowSchema) -> PyResult<Fields> {
     let read = catch_panic(|| DataType::try_from(schema));
     match read {
@@ -219,7 +220,8 @@ fn fields(schema: &FFI_ArrowSchema) -> PyResult<Fields> {
     }
 }
 
-/// Converts an Arrow array to a batch with these columns. `arrow` panics if a table violates the protocol.
+/// Converts an Arrow array to a batch with these columns. The crate `arrow` panics if a table violates the protocol;
+/// such a panic becomes an error.
 fn batch(array: FFI_ArrowArray, fields: &Fields) -> Result<StructArray, String> {
     let broken = || "the Arrow array does not have the columns of its schema".to_owned();
     if array.num_children() != fields.len() {
@@ -234,8 +236,8 @@ fn batch(array: FFI_ArrowArray, fields: &Fields) -> Result<StructArray, String> 
         .map_err(|error| error.to_string())
 }
 
-/// Returns a column of a batch as numbers; NaN is unknown. If a whole row is null, its value is unknown, whatever the
-/// column contains.
+/// Returns a column of a batch as numbers, where NaN means unknown. If a whole row is null, its value is unknown,
+/// whatever the column contains.
 pub(crate) fn column<'a>(
     name: &str,
     batch: &'a StructArray,

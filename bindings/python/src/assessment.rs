@@ -34,11 +34,11 @@ pub(crate) struct AssessmentData {
     flight: Py<FlightData>,
     loaded: Arc<Loaded>,
     step_s: Option<f64>,
-    /// Whether the steps have intervals of the risk.
+    /// A column as numbers, where NaN means unknown.
     with_intervals: bool,
     /// The flight and its assessment; after unpickling, created again at the first use.
     subject: OnceLock<Arc<Subject>>,
-    /// Verdict, findings and summary in JSON, as they are pickled.
+    /// The verdict, findings and summary as JSON, in the form in which they are pickled.
     json_text: Option<String>,
 }
 
@@ -208,7 +208,7 @@ pub(crate) fn steps(assessed: &Assessment) -> PyResult<Table> {
         ("spread", "1", number(&|step| step.spread)),
         ("judged", "", Arc::new(judged)),
     ];
-    // A profile may have an input `spread` whose window differs from that of the column with this name.
+    // A profile may have an input `spread`, but its window may differ from the window of the column `spread`.
     let inputs: Vec<String> = assessed
         .inputs
         .iter()

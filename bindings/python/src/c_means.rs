@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 
 use crate::{errors::data_error, threads::interruptible};
 
-/// Centers, degrees, loss and iterations.
+/// The cluster centers, the degrees of membership, the loss, and the number of iterations.
 type ClusterArrays<'py> = (
     Bound<'py, PyArray2<f64>>,
     Bound<'py, PyArray2<f64>>,

@@ -89,14 +89,15 @@ impl CompiledRuleSet {
         }
     }
 
-    /// Returns the values in the order of the inputs, or a single argument as it is.
+    /// Returns the values in the order of the inputs. A single argument is returned as it is.
     fn values<'py>(
         &self,
         py: Python<'py>,
         args: &Bound<'py, PyTuple>,
         named: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Vec<Bound<'py, PyAny>>> {
-        // `model({"service": 8, "food": 9})`, for names that are not Python identifiers.
+        // A call with a dict, such as `model({"service": 8, "food": 9})`, also allows names that are not Python
+        // identifiers.
         let mapping = match named {
             None if args.len() == 1 => args.get_item(0)?.cast_into::<PyDict>().ok(),
             _ => None,

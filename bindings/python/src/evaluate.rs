@@ -18,10 +18,11 @@ use crate::{
     threads,
 };
 
-/// The number of rows whose outcomes fit into the cache.
+/// The number of rows in a block, chosen so that their outcomes fit into the cache.
 const BLOCK: usize = 1024;
 
-/// Evaluates tables in sequence. If an output keeps its previous value, it also keeps it from one table to the next.
+/// Evaluates several tables one after another. If an output keeps its previous value when no rule fires, the value is
+/// also kept from the end of one table to the start of the next.
 pub(crate) struct Evaluator<'e> {
     engine: &'e Engine,
     sequence: Option<Sequence<'e>>,
@@ -30,7 +31,7 @@ pub(crate) struct Evaluator<'e> {
     with_reasons: bool,
 }
 
-/// The part of the result into which one block of rows is evaluated.
+/// The part of the results that receives the outcomes of one block of rows.
 struct Block<'a> {
     first: usize,
     outputs: Vec<BlockOutput<'a>>,

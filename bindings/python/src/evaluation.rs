@@ -32,7 +32,7 @@ use crate::{
 #[pyclass(frozen, subclass, module = "flagred._core")]
 pub(crate) struct EvaluationData {
     evaluation: Arc<Evaluation>,
-    /// The estimators, in the order of the scores of a case.
+    /// The names of the estimators, in the same order as the scores of each case.
     names: Vec<String>,
     notes: Vec<String>,
 }
@@ -80,7 +80,7 @@ impl EvaluationFailure {
     }
 }
 
-/// The shipped profiles that read only the motors, and the given ones.
+/// Returns the estimators of the shipped profiles that require only motor commands, and of the requested profiles.
 fn estimators(py: Python<'_>, requested: &[PyRef<'_, Profile>]) -> PyResult<Estimators> {
     let mut estimators = Estimators::default();
     for name in shipped::motor_profile_names() {
@@ -124,7 +124,7 @@ fn evaluate(
     stop: &AtomicBool,
 ) -> Result<Evaluation, EvaluationFailure> {
     let logs = named(logs)?;
-    // Logs after the first one that ends the evaluation are not read.
+    // If a log ends the evaluation with an error, the logs after it are not read.
     let last = AtomicUsize::new(usize::MAX);
     let each = logs.par_iter().enumerate().map(|(i, (log, is_named))| {
         if i > last.load(Ordering::Relaxed) || stop.load(Ordering::Relaxed) {
@@ -162,7 +162,7 @@ fn name(log: &Source) -> String {
     }
 }
 
-/// The rows of a table as cases, and notes about them.
+/// Converts the rows of a table to cases. Also returns notes about the rows.
 fn row_cases(rows: &FlightRows<'_>, estimators: &Estimators) -> PyResult<(Vec<Case>, Vec<String>)> {
     let columns: Vec<&str> = rows.names.iter().map(String::as_str).collect();
     if !columns.contains(&ERROR) {

@@ -74,9 +74,9 @@ pub(crate) struct ExplainedOutput {
     rules: Vec<Py<Share>>,
     /// The degree of the value in each term.
     terms: Py<PyDict>,
-    /// The aggregated set: values over the range.
+    /// The points over the range of the output at which the degree of the aggregated set is given.
     set_at: Py<PyArray1<f64>>,
-    /// The aggregated set: the degree at each value.
+    /// The degree of the aggregated set at each point in `set_at`.
     set_degree: Py<PyArray1<f64>>,
 }
 

@@ -50,7 +50,7 @@ type SignalParts = (String, String, String, Option<f64>, usize);
 
 type Column<'py> = Bound<'py, PyArray1<f64>>;
 
-/// Arguments of [`FlightData::new`], as they are pickled.
+/// The arguments of [`FlightData::new`], in the form in which they are pickled.
 type Parts<'py> = (
     Bound<'py, PyBytes>,
     String,
@@ -58,7 +58,7 @@ type Parts<'py> = (
     Option<(u16, u16)>,
 );
 
-/// Columns as a table; values of all but the first may be unknown.
+/// Converts columns to a table. All columns except the first may contain unknown values.
 fn table(columns: Vec<(String, &str, Vec<f64>)>) -> PyResult<Table> {
     let mut fields = Vec::new();
     let mut arrays: Vec<ArrayRef> = Vec::new();
@@ -107,7 +107,7 @@ impl FlightData {
         Ok(self.flight.get_or_init(|| Arc::new(flight)))
     }
 
-    /// The bytes of the log at the time of reading.
+    /// Returns the bytes of the log, or an error if its file changed after it was read.
     fn bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let (path, read) = match &self.source {
             Source::Bytes(bytes) => return Ok(bytes.bind(py).clone()),
@@ -262,7 +262,7 @@ impl FlightData {
         Ok(signals.collect())
     }
 
-    /// The times and values of a signal; NaN is unknown.
+    /// The times and values of a signal, where NaN means unknown.
     fn _signal<'py>(
         &self,
         py: Python<'py>,

@@ -12,17 +12,17 @@ use crate::errors::data_error;
 pub(crate) struct Outcome {
     /// The value; None if it is unknown.
     value: Option<f64>,
-    /// The lower end of the interval of an output that depends on type-2 terms; otherwise the value.
+    /// The lower end of the interval if the output depends on type-2 terms; otherwise the value itself.
     low: Option<f64>,
-    /// The upper end of the interval of an output that depends on type-2 terms; otherwise the value.
+    /// The upper end of the interval if the output depends on type-2 terms; otherwise the value itself.
     high: Option<f64>,
     /// The largest firing strength of a rule, in [0, 1].
     coverage: f64,
     /// The number of the rule with the largest firing strength, from 1; None if no rule fires.
     dominant_rule: Option<usize>,
-    /// Whether an input was outside its range and was clamped to its end.
+    /// Whether an input was outside its range and was therefore clamped to the nearer end of the range.
     clamped: bool,
-    /// The state of the value.
+    /// The state of the value, such as ``defined``.
     state: &'static str,
 }
 
@@ -133,9 +133,9 @@ impl From<engine::Outcome> for Outcome {
 /// The outcomes of one output at many points, as arrays.
 #[pyclass(frozen, get_all, module = "flagred.types")]
 pub(crate) struct Outcomes {
-    /// The values; NaN if they are unknown.
+    /// The lower ends of the intervals if the output depends on type-2 terms; otherwise the values themselves.
     value: Py<PyArrayDyn<f64>>,
-    /// The lower ends of the intervals of an output that depends on type-2 terms; otherwise the values.
+    /// The upper ends of the intervals if the output depends on type-2 terms; otherwise the values themselves.
     low: Py<PyArrayDyn<f64>>,
     /// The upper ends of the intervals of an output that depends on type-2 terms; otherwise the values.
     high: Py<PyArrayDyn<f64>>,
@@ -143,18 +143,18 @@ pub(crate) struct Outcomes {
     coverage: Py<PyArrayDyn<f64>>,
     /// The number of the rule with the largest firing strength, from 1; masked if no rule fires.
     dominant_rule: Py<PyAny>,
-    /// Whether an input was outside its range and was clamped to its end.
+    /// Whether an input was outside its range and was therefore clamped to the nearer end of the range.
     clamped: Py<PyArrayDyn<bool>>,
 }
 
 /// The outcomes of one output, row by row.
 pub(crate) struct Columns {
-    /// The values; NaN is unknown.
+    /// The values, where NaN means unknown.
     pub(crate) value: Vec<f64>,
     pub(crate) reasons: Option<Reasons>,
 }
 
-/// The lower and the upper ends of intervals; NaN is unknown.
+/// The lower and the upper ends of intervals, where NaN means unknown.
 pub(crate) struct Ends {
     pub(crate) low: Vec<f64>,
     pub(crate) high: Vec<f64>,
@@ -162,10 +162,10 @@ pub(crate) struct Ends {
 
 /// The columns of outcomes other than the values.
 pub(crate) struct Reasons {
-    /// `None` if no type-2 term affects the output.
+    /// The ends of the intervals; `None` if no type-2 term affects the output.
     pub(crate) ends: Option<Ends>,
     pub(crate) coverage: Vec<f64>,
-    /// [`NO_RULE`] if no rule fires.
+    /// The number of the rule with the largest firing strength; [`NO_RULE`] if no rule fires.
     pub(crate) dominant_rule: Vec<i32>,
     pub(crate) clamped: Vec<bool>,
 }

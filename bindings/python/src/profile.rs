@@ -58,7 +58,7 @@ pub(crate) fn _built_in(name: &str) -> Option<&'static str> {
         .map(|known| known.text)
 }
 
-/// A loaded profile, or the error of loading it.
+/// Returns a loaded profile, or the error that occurred while it was loaded.
 fn profile_or_error(
     py: Python<'_>,
     file: &str,

@@ -98,7 +98,7 @@ pub(crate) fn choice<T: Copy>(key: &str, word: &str, choices: &[(&str, T)]) -> P
     Err(data_error(format!("`{key}` is `{word}`"), Some(help)))
 }
 
-/// The inputs of `rising`, then those of `falling`, each with its direction.
+/// The inputs in `rising`, followed by the inputs in `falling`, each with its direction.
 pub(crate) fn directed<D: Copy>(
     rising: &[String],
     falling: &[String],

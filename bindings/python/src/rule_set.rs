@@ -65,7 +65,7 @@ impl RuleSet {
         self.source().text.clone()
     }
 
-    /// Compiles the rule set, unless this is done already.
+    /// Compiles the rule set, unless it is already compiled.
     pub(crate) fn compile(&self, py: Python<'_>) -> PyResult<()> {
         self.source().compiled(py).map(|_| ())
     }
@@ -102,7 +102,7 @@ fn evaluate_call<'py>(
     }
 }
 
-/// Evaluates a frame by a function in Python, which returns a frame of the same library.
+/// Calls a Python function that evaluates a frame and returns a frame of the same library.
 fn by_frame<'py>(
     rule_set: &Bound<'py, RuleSet>,
     frame: Bound<'py, PyAny>,
@@ -217,7 +217,8 @@ impl RuleSet {
         json.map_err(|error| data_error(error, None))
     }
 
-    /// The model in JSON, with lists of named entries instead of objects. Sorting the keys does not change their order.
+    /// The model in JSON, with lists of named entries instead of objects, so that the order of the entries is preserved
+    /// if a program sorts the keys of objects.
     fn _json_lists(&self) -> PyResult<String> {
         let json = self.model(serde_json::to_string);
         json.map_err(|error| data_error(error, None))
@@ -234,7 +235,8 @@ impl RuleSet {
         Ok(())
     }
 
-    /// The text to save in a format, and warnings. In the original format, this is the text that was read.
+    /// Returns the text to save in the given format, and warnings. If the current text is already in this format, it is
+    /// returned unchanged.
     #[pyo3(signature = (format, lossy = false))]
     fn _to_text(
         &self,
@@ -387,9 +389,10 @@ impl RuleSet {
     /// Returns
     /// -------
     /// Outcome, Outcomes or frame
-    ///     Value, coverage, dominant rule and whether an input was clamped: of a point, as arrays, or as columns of a
-    ///     frame. Outputs that depend on type-2 terms also have the ends of their interval, ``low`` and ``high``; in
-    ///     frames the columns ``tip_low`` and ``tip_high``. With several outputs, a dict by their names.
+    ///     The value, the coverage, the dominant rule, and whether an input was clamped: for a point as one outcome,
+    ///     for arrays as arrays, for a frame as its columns. Outputs that depend on type-2 terms also have the ends of
+    ///     their interval, ``low`` and ``high``; in a frame, the output ``tip`` then has the columns ``tip_low`` and
+    ///     ``tip_high``. With several outputs, a dict by their names.
     ///
     /// Examples
     /// --------
@@ -405,7 +408,7 @@ impl RuleSet {
         evaluate_call(slf, args, named, threads, true)
     }
 
-    /// Evaluates inputs of which only intervals are known.
+    /// Evaluates the rule set for inputs that are known only as intervals.
     ///
     /// Parameters
     /// ----------
@@ -415,8 +418,8 @@ impl RuleSet {
     /// Returns
     /// -------
     /// IntervalOutcome
-    ///     An interval that contains every value of the output for inputs inside these intervals, and whether the output
-    ///     may have no value. With several outputs, a dict by their names.
+    ///     An interval that contains every value of the output for inputs inside these intervals, and whether the
+    ///     output may have no value. With several outputs, a dict by their names.
     ///
     /// Raises
     /// ------
@@ -561,12 +564,13 @@ impl RuleSet {
     /// coverage
     ///     The firing strength that at least one rule should reach everywhere.
     /// rising, falling
-    ///     Inputs with which no output may fall, or rise: ``["service"]``, or ``["service:tip"]`` for one of several outputs.
+    ///     Inputs. When an input in ``rising`` rises, no output may fall; when an input in ``falling`` rises, no
+    ///     output may rise. Write ``["service"]``, or ``["service:tip"]`` for one of several outputs.
     ///
     /// Returns
     /// -------
     /// list of Diagnostic
-    ///     The findings in the order of the text; ``str()`` draws one.
+    ///     The findings in the order of the text; ``str()`` shows one with its source lines.
     #[pyo3(signature = (*, coverage = 0.5, rising = Vec::new(), falling = Vec::new()))]
     fn check<'py>(
         &self,

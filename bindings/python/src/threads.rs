@@ -52,10 +52,11 @@ pub(crate) fn checked(threads: Option<usize>) -> PyResult<()> {
     }
 }
 
-/// A pool with this number of threads, at most the number of cores, which is also the default.
+/// Returns a pool with the given number of threads, but at most one thread per core. The default is one thread
+/// per core.
 ///
-/// A fork copies a pool without its threads, so work in the copy would never run. Therefore a child process creates its
-/// own pools.
+/// A fork copies a pool without its threads, so work in the copy would never run. Therefore a child process
+/// creates its own pools.
 pub(crate) fn pool(threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
     static POOLS: Mutex<Option<Pools>> = Mutex::new(None);
     checked(threads)?;
@@ -86,8 +87,8 @@ pub(crate) fn interruptible<T: Send + 'static>(
     run_interruptibly(py, work, Err)
 }
 
-/// Like [`interruptible`], for work that returns a result soon after `stop` is set. The first Ctrl-C sets it and waits for the
-/// result; the second does not wait. Also returns whether Ctrl-C was pressed.
+/// Like [`interruptible`], for work that returns a result soon after `stop` is set. The first Ctrl-C sets `stop`, and
+/// the function waits for the result; after a second Ctrl-C it does not wait. Also returns whether Ctrl-C was pressed.
 pub(crate) fn stoppable<T: Send + 'static>(
     py: Python<'_>,
     stop: &AtomicBool,

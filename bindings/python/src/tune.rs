@@ -204,7 +204,7 @@ fn rounded(loss: f64) -> f64 {
     format!("{loss:.5e}").parse().unwrap_or(loss)
 }
 
-/// The usable rows as columns, and the reason for each row that is not usable.
+/// Returns the usable rows as columns, and for each of the other rows the reason why it is not usable.
 fn data(model: &Model, rows: Vec<Row>, loss: Loss) -> (Data, Vec<String>) {
     let mut data = Data {
         inputs: vec![Vec::with_capacity(rows.len()); model.inputs.len()],

@@ -252,7 +252,7 @@ export interface Log {
 /** The quantity that a threshold applies to. */
 export type Measure = 'risk' | 'elevated_risk' | 'command_noise' | 'reserve' | 'imbalance' | 'pair_imbalance' | 'weak_motor' | 'idle_in_air';
 
-/** The state at a time of a flight. */
+/** The state of a flight at a given time. */
 export interface Moment {
   /** The requested time, in seconds. */
   t_s: number;
@@ -436,7 +436,7 @@ export type SilentRule = {
   strength: number;
 };
 
-/** The state at one time of a flight as serde data; from `Step::by_name`. */
+/** The state of a flight at one time, for serialisation; created by `Step::by_name`. */
 export interface Step {
   /** The time on the clock of the log, in seconds. */
   t_s: number;

@@ -1,10 +1,10 @@
 //! flagred for JavaScript: rule sets and flight logs in a browser's worker or in Node.
 //!
-//! Errors are thrown as an `Error` with the same text as on the command line. Documents are JSON, the same as those of
-//! the command line; columns and maps are `Float64Array`.
+//! Errors are thrown as an `Error` with the same text as on the command line. Documents are the same JSON
+//! documents as on the command line; columns and maps are `Float64Array`.
 //!
-//! It is compiled once for each feature: a page that shows flights does not load the code for
-//! editing rule sets, and an editor does not load the code for tuning.
+//! This crate is compiled once for each feature: a page that shows flights does not load the code for editing
+//! rule sets, and an editor does not load the code for tuning.
 
 #[cfg(feature = "data")]
 pub mod data;

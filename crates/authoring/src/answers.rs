@@ -101,7 +101,7 @@ pub struct Explained<'a> {
     /// The rules that do not fire.
     #[serde(skip_serializing_if = "Option::is_none")]
     silent: Option<Vec<engine::SilentRule>>,
-    /// The nearest changes of the result if one input changes and the others do not.
+    /// The smallest changes of single inputs that change the result while the other inputs stay the same.
     #[serde(skip_serializing_if = "Option::is_none")]
     changes: Option<Vec<engine::Change>>,
 }

@@ -60,7 +60,7 @@ fn item(label: &str, kind: Kind, detail: Option<String>) -> Completion {
     }
 }
 
-/// The text of the rule before the cursor, from its `IF` on.
+/// The text of the rule before the cursor, starting at its `IF`.
 fn rule(before: &str) -> Option<&str> {
     let mut start = before.len();
     loop {
@@ -81,7 +81,7 @@ fn rule(before: &str) -> Option<&str> {
     item.get(at..)
 }
 
-/// The words that may follow in a rule.
+/// Returns completions for the words that may follow the given start of a rule.
 fn in_rule(document: &Document, rule: &str) -> Vec<Completion> {
     let spaced = rule.replace(['(', ')'], " ");
     let mut words: Vec<&str> = spaced.split_whitespace().collect();

@@ -1,5 +1,5 @@
-//! Changes numbers of a text in place: those of membership functions, and the weights of rules. Comments and layout
-//! are preserved.
+//! Changes numbers of a text in place: the parameters of membership functions, and the weights of rules. Comments
+//! and layout are preserved.
 
 use std::ops::Range;
 
@@ -12,8 +12,9 @@ use fuzzy::{
 
 use crate::Edit;
 
-/// The edits that change the numbers of the rule set in a text to those of `wanted`. `None` if a number that differs
-/// is not in the text. Nothing else is compared, so the meaning of the edited text must be verified.
+/// The edits that replace the numbers of the rule set in a text by the numbers of `wanted`. `None` if a number that
+/// must change does not occur in the text. Nothing else is compared, so the meaning of the edited text must be
+/// verified.
 pub(crate) fn of_model(text: &str, document: &Document, wanted: &Model) -> Option<Vec<Edit>> {
     let mut edits = Vec::new();
     let spans = document.spans.inputs.iter().chain(&document.spans.outputs);
@@ -42,8 +43,8 @@ pub(crate) fn of_model(text: &str, document: &Document, wanted: &Model) -> Optio
     Some(edits)
 }
 
-/// The edits that change the numbers of a variable in a text to those of `terms`. `None` if a number that differs is not
-/// in the text.
+/// The edits that replace the numbers of a variable in a text by the numbers of `terms`. `None` if a number that must
+/// change does not occur in the text.
 pub(crate) fn of_terms(
     text: &str,
     variable: &Variable,
@@ -145,7 +146,7 @@ fn constant(text: &str, spans: &TermSpans, value: f64) -> Option<Edit> {
     })
 }
 
-/// Converts an even partition `[low, high]` to one with peaks: `{low: 0, high: 1}`.
+/// Converts an even partition such as `[low, high]` to a partition with explicit peaks: `{low: 0, high: 1}`.
 fn spelt_out(text: &str, spans: &VariableSpans, peaks: &[f64]) -> Option<Vec<Edit>> {
     let list = spans.partition.clone();
     let is_flow = text.get(list.clone())?.starts_with('[');

@@ -117,8 +117,8 @@ fn cell(mapped: &Mapped<'_>, outcome: &Outcome, point: &[f64]) -> Cell {
     }
 }
 
-/// Returns the part of a variable's range to show. It is the whole range, unless the terms change only within less than
-/// a quarter of it. In that case it is that part, with margins that double its width.
+/// Returns the part of a variable's range to show. Usually this is the whole range. If the terms change only within
+/// less than a quarter of the range, only that part is shown, with margins that double its width.
 pub fn shown(variable: &Variable) -> Scale {
     let (low, high) = (variable.low, variable.high);
     let (first, last) = fuzzy::map::changing(variable);

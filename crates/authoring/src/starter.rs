@@ -17,7 +17,8 @@ pub fn profile(name: &str, from: &Shipped) -> String {
     format!("{}\n{}", PROFILE.replace("NAME", name), renamed(name, from))
 }
 
-/// The text of a shipped rule set or profile, including comments, with another name, which must satisfy [`is_name`].
+/// The text of a shipped rule set or profile, including comments, with its name replaced by the given one, which must
+/// satisfy [`is_name`].
 pub fn renamed(name: &str, from: &Shipped) -> String {
     let own = format!("\nname: {}\n", from.name);
     from.text.replacen(&own, &format!("\nname: {name}\n"), 1)

@@ -651,7 +651,8 @@ fn widest_gap(places: &[f64], low: f64, high: f64) -> (usize, f64) {
     (at, shortened((from + to) / 2.0, high - low))
 }
 
-/// The position of a shape, by which it is compared with others.
+/// The position by which a term is placed when gaps between terms are measured: the mean of a Gaussian, otherwise the
+/// average of the parameters.
 fn middle(shape: &MembershipFunction) -> Option<f64> {
     let numbers: Vec<f64> = shape
         .parameters()

@@ -1,4 +1,5 @@
-//! Built-in rule sets and profiles, by name. A built-in name takes precedence over a file of that name; `./flagred` names the file.
+//! Built-in rule sets and profiles, by name. A built-in name takes precedence over a file of that name; to refer to the
+//! file, write `./flagred`.
 
 use std::path::Path;
 

@@ -33,8 +33,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(Exit::Clean)
 }
 
-/// Adds the names of built-in profiles to the script for `--profile`, which takes names and files. clap's generator supports only one of
-/// them.
+/// Adds the names of built-in profiles to the script, as completions for `--profile`. This option takes names and
+/// files, but clap's generator supports only one of the two.
 fn with_built_in(shell: Shell, script: &str) -> String {
     let names: Vec<&str> = built_in::profile_names().collect();
     let names = names.join(" ");

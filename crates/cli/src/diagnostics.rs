@@ -30,7 +30,7 @@ pub(crate) fn draw(findings: &[Diagnostic], file: &str, text: &str, colored: boo
     diagnostics::draw(findings, file, text, style)
 }
 
-/// Returns whether a text looks like a profile or a rule set, including those of other programs.
+/// Returns whether a text looks like a profile or a rule set, which may be in the format of another program.
 pub(crate) fn is_meant_as_rules(text: &str) -> bool {
     flagred_interchange::Format::of(text).is_some() || flagred::loaded::is_meant_as_rules(text)
 }
@@ -77,7 +77,7 @@ pub(crate) fn read_bytes(file: fs::File, shown: &str) -> Result<Vec<u8>, Failure
     whole(read_up_to_limit(file), shown)
 }
 
-/// Reports a rule set or profile that cannot be read or is too large.
+/// Returns the bytes of a rule set or profile, or the failure to report if it cannot be read or is too large.
 fn whole(bytes: io::Result<Vec<u8>>, shown: &str) -> Result<Vec<u8>, Failure> {
     let bytes = bytes.map_err(|error| {
         let failure = cannot_read(shown, &error);
@@ -122,7 +122,7 @@ fn foreign(bytes: &[u8], shown: &str) -> Option<(&'static str, String)> {
         ));
     }
     match flagred_flightlog::kind_of(bytes) {
-        // The check of rule sets reports what such a text file contains.
+        // Other text files are accepted here, because the check of rule sets reports what they contain.
         Some(kind) if kind.is_text() => {}
         Some(kind) if kind != FileKind::LOG => {
             return Some((kind.name, kind.help.unwrap_or(RULES).replace("FILE", shown)));

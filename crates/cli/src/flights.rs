@@ -1,4 +1,4 @@
-//! Flights as training data: logs must be complete.
+//! Opens flights as training data. Their logs must be complete.
 
 use std::path::Path;
 

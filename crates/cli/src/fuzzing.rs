@@ -1,5 +1,5 @@
-//! The commands applied to bytes, without files, sockets or a terminal, for the fuzz targets and the tests that share their
-//! code. This is not a public interface; it changes without notice.
+//! Runs the commands on bytes, without files, sockets or a terminal, for the fuzz targets and the tests that share
+//! their code. This is not a public interface; it changes without notice.
 
 use std::{convert::Infallible, net::SocketAddr, sync::Arc};
 

@@ -24,7 +24,7 @@ pub(crate) fn rows(out: &mut dyn Write, used: usize, refused: &[String]) -> std:
     listed(out, 12, refused, refused.len())
 }
 
-/// Writes the first of `count` items, each on a line with an indentation, and how many more there are.
+/// Writes the first few of `count` items, each on its own indented line, and the number of remaining items.
 pub(crate) fn listed(
     out: &mut dyn Write,
     indent: usize,
@@ -97,7 +97,7 @@ pub(crate) struct ConfusionDocument {
     classes: Vec<f64>,
     /// For each class, the number of its rows that were predicted as each class.
     rows: Vec<Vec<usize>>,
-    /// The share of rows that were predicted as their class.
+    /// The share of rows whose class was predicted correctly.
     accuracy: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Parsers of numbers on the command line, whose errors name what is allowed.
+//! Parsers of numbers on the command line. Their error messages state which numbers are allowed.
 
 use std::{fmt::Display, str::FromStr};
 
@@ -9,7 +9,7 @@ pub(crate) fn whole<N>(low: N, high: N) -> impl Fn(&str) -> Result<N, String> + 
 where
     N: FromStr + PartialOrd + Display + Copy + Send + Sync + 'static,
 {
-    // A limit that only the type imposes is not worth mentioning.
+    // A limit that exists only because of the number type is not mentioned in the message.
     let is_open = high.to_string().len() > 15;
     move |text| {
         let number = text.parse().ok();
@@ -74,8 +74,8 @@ fn fraction(text: &str, is_allowed: impl Fn(f64) -> bool, what: &str) -> Result<
 fn real(text: &str, is_allowed: impl Fn(f64) -> bool, what: &str) -> Result<f64, String> {
     let number = text.parse().ok();
     let number = number.filter(|number: &f64| number.is_finite() && is_allowed(*number));
-    // With one of these units, the bare number would have another meaning in the unit of the option, so the advice does
-    // not contain it.
+    // If the text has one of these units, the number without the unit would have another meaning, so the advice does
+    // not suggest it.
     let other_unit = ["us", "min", "h"].iter().find(|unit| text.ends_with(*unit));
     number.ok_or_else(|| match (number_advice(text), other_unit) {
         (Some(_), Some(unit)) => format!("{what}, without `{unit}`, in the unit of the option"),

@@ -73,7 +73,7 @@ pub(crate) struct DerivationArguments {
 }
 
 impl DerivationArguments {
-    /// Returns the inputs and the output.
+    /// Returns the files that the command reads and writes, and its output.
     pub(crate) fn files(&self, command: &str) -> Result<(Files, Output), Failure> {
         let with_output = format!("{command} --output {}", self.rewrite.output.display());
         table::rule_set_first(&with_output, &self.rewrite.model, &self.data)?;
@@ -116,7 +116,7 @@ impl OutputClaims {
         })
     }
 
-    /// Returns the claims; those about rising inputs come first.
+    /// Returns the claims of `--rising`, followed by the claims of `--falling`.
     ///
     /// # Errors
     ///
@@ -152,7 +152,7 @@ impl OutputClaims {
         ))
     }
 
-    /// Returns an error if there are claims: the file is a profile, and claims are about rule sets.
+    /// Returns an error if there are claims: the file is a profile, but only rule sets can have claims.
     pub(crate) fn about_rule_sets(&self, profile: &Path) -> Result<(), Failure> {
         let option = match self.rising.is_empty() {
             _ if self.is_empty() => return Ok(()),
@@ -420,14 +420,15 @@ pub(crate) fn columns(
     Ok(data)
 }
 
-/// Refuses rows with the value of an input outside its range.
+/// Refuses rows in which the value of an input is outside its range.
 pub(crate) fn in_range(read: Data, model: &Model) -> Data {
     let Data { rows, mut refused } = read;
     let is_outside =
         |(value, input): &(&f64, &Variable)| !(input.low..=input.high).contains(*value);
     let mut kept = Vec::with_capacity(rows.len());
     for (row, place) in rows {
-        // The output, which is the last value, may be outside its range: constants then stop at the end of the range.
+        // The output, which is the last value, may be outside its range: constants are then limited to the end of the
+        // range.
         match row.values.iter().zip(&model.inputs).find(is_outside) {
             None => kept.push((row, place)),
             Some((value, input)) => {
@@ -470,7 +471,8 @@ pub(crate) fn in_columns(
     (data, refused)
 }
 
-/// Reports rows that cannot be used, of `rows` in all, as a failure. Rows with the same problem are summarised.
+/// Reports the rows that cannot be used, out of `rows` rows in total, as a failure. Rows with the same problem are
+/// summarised.
 pub(crate) fn refuse(refused: &[String], rows: usize, purpose: &str) -> Failure {
     const SHOWN: usize = 3;
     const KINDS: usize = 5;

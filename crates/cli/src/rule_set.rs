@@ -35,7 +35,7 @@ pub(crate) fn load(path: &Path) -> Result<Engine, Failure> {
     engine(&read(path)?, &path.display().to_string()).cloned()
 }
 
-/// Like [`document`], and compiles the rule set.
+/// Like [`document`], but also compiles the rule set.
 pub(crate) fn engine<'s>(source: &'s Source, file: &str) -> Result<&'s Engine, Failure> {
     document(source, file)?;
     let engine = source.engine();

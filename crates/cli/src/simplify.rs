@@ -364,9 +364,9 @@ struct RuleDocument {
 
 #[derive(Serialize, JsonSchema)]
 struct Change {
-    /// The function for OR before.
+    /// The function for OR before simplification.
     before: &'static str,
-    /// The function for OR after.
+    /// The function for OR after simplification.
     after: &'static str,
 }
 
@@ -388,9 +388,9 @@ struct DifferenceDocument<'a> {
     output: &'a str,
     /// The size of the difference.
     size: f64,
-    /// The value before.
+    /// The value of the output before simplification.
     before: f64,
-    /// The value after.
+    /// The value of the output after simplification.
     after: f64,
     /// The values of the inputs at this difference.
     inputs: Vec<InputDocument<'a>>,

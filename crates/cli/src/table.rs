@@ -146,7 +146,7 @@ fn delimiter(text: &str) -> Result<u8, String> {
     }
 }
 
-/// Returns whether the name of a file is that of a table.
+/// Returns whether a file has the extension of a table.
 pub(crate) fn is_table(path: &Path) -> bool {
     has_ending(path, &["csv", "tsv"])
 }

@@ -1,4 +1,5 @@
-//! `flagred validate`: how good are the risks of profiles, compared with predictors without rules?
+//! `flagred validate`: measures how well the risks of profiles predict attitude errors, compared with predictors
+//! without rules.
 
 use std::{
     io::Write,
@@ -93,7 +94,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(exit)
 }
 
-/// The built-in profiles that read only the motors, and the requested ones.
+/// Returns the estimators of the built-in profiles that require only motor commands, and of the requested profiles.
 fn estimators(requested: &[String]) -> Result<Estimators, Failure> {
     let mut estimators = Estimators::default();
     let shipped = shipped::motor_profile_names().map(str::to_owned);

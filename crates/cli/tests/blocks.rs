@@ -1,4 +1,4 @@
-//! Rule blocks, activation methods and previous values in the commands.
+//! Commands with rule sets that use rule blocks, activation methods or previous values.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod common;
@@ -21,7 +21,7 @@ rules: [IF heat IS low THEN speed IS slow AND lamp IS off, IF heat IS high THEN 
 #[test]
 fn eval_keeps_the_previous_value_from_row_to_row() {
     let mut points = String::from("heat\n22\n10\n");
-    // More rows than fit into one block.
+    // More rows than fit into one block of rows.
     for _ in 0..9000 {
         points += "22\n";
     }

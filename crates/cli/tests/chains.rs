@@ -1,4 +1,4 @@
-//! Rule sets whose outputs read other outputs, in the commands.
+//! Commands with rule sets in which outputs read other outputs.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod common;

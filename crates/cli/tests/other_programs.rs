@@ -16,7 +16,7 @@ fn text(bytes: &[u8]) -> &str {
     std::str::from_utf8(bytes).unwrap()
 }
 
-/// Writes the tipper in a format, and returns the file.
+/// Exports the rule set `tipper` in the format with this file extension, and returns the path of the file.
 fn tipper(folder: &tempfile::TempDir, ending: &str) -> PathBuf {
     let file = folder.path().join(format!("tipper.{ending}"));
     let option = format!("--{ending}");

@@ -1,4 +1,4 @@
-//! Commands that read tables beside a rule set: `eval`, `explain --rows`, `map --check`, `learn`, `tune`.
+//! Commands that read tables in addition to a rule set: `eval`, `explain --rows`, `map --check`, `learn`, `tune`.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -49,7 +49,7 @@ fn map_check_compares_the_columns_that_eval_wrote() {
     let (code, out, err) = flagred(folder.path(), &[&check[..], &layout].concat());
     let same = "compared.csv: `speed_rules` is the same at 3 points\n";
     assert_eq!((code, out.as_str(), err.as_str()), (Some(0), same, ""));
-    // Without `--suffix`, the column with the measured values is compared.
+    // Without `--suffix`, `map --check` compares the column with the measured values.
     let (code, out, err) = flagred(folder.path(), &[&check[..], &layout[2..]].concat());
     assert_eq!(code, Some(1));
     insta::assert_snapshot!(out + &err, @r"

@@ -214,7 +214,8 @@ fn constants_stay_in_the_range_by_default() {
     assert!(written.contains("fast: {constant: 10}"), "{written}");
 }
 
-/// The rows have another unit than the range: the constants stop at the end of the range, and the report explains why.
+/// The rows use a unit different from that of the range: the constants stop at the end of the range, and the report
+/// explains why.
 #[test]
 fn constants_that_the_rows_pull_out_of_the_range_are_reported() {
     let rows = "heat,speed\n5,1400\n15,1500\n25,1600\n35,1700\n";
@@ -336,7 +337,7 @@ fn numbers_change_in_place_in_the_text() {
     }
     assert!(provenance.contains("command: flagred tune"), "{written}");
 
-    // A second step is appended to the first.
+    // The provenance of a second tuning is appended to that of the first.
     let files = [("fan.yaml", &*written), ("rows.csv", &*rows)];
     let (code, _, err, again) = tune(&files, &["--only", "speed", "--no-validation"]);
     assert_eq!(code, Some(0), "{err}");
@@ -361,7 +362,7 @@ fn a_text_that_cannot_change_in_place_is_rewritten() {
     assert!(written.starts_with("# A fan for the attic.\nfuzzy: 1\n") && !written.contains("&n"));
 }
 
-/// Files cannot grow beyond 512 bytes, but a pipe can transfer more.
+/// Where files cannot grow beyond 512 bytes, as on a full disk, output to a pipe is still complete.
 #[test]
 #[cfg(unix)]
 fn other_outputs_are_written_despite_a_full_disk() {

@@ -1,4 +1,4 @@
-//! Alarms in calm times, and before upsets.
+//! Counts alarms in calm times, and alarms before upsets.
 //!
 //! An alarm is a WARN or FAIL. It lasts from the time it is raised to the last time its level was reached; the
 //! time for which the level is held afterwards does not count. A WARN that is raised to FAIL counts as one alarm.
@@ -30,7 +30,7 @@ pub(crate) struct Alarms {
 }
 
 impl Alarms {
-    /// Computes the alarms of a profile.
+    /// Counts the alarms of a profile.
     pub(crate) fn of(profile: usize, records: &[Record]) -> Alarms {
         let main = || records.iter().filter(|record| record.kind != SEPARATE_KIND);
         let of_kind = |kind: &str| {
@@ -65,7 +65,8 @@ const ORDINARY_DEG: f64 = 5.0;
 /// A flight whose tilt reaches this, in degrees, is not ordinary.
 const STEEP_DEG: f64 = 45.0;
 
-/// The time in the air if the flight is ordinary (without an upset, a large error or a steep tilt); otherwise none.
+/// The times in the air of an ordinary flight (without an upset, a large error or a steep tilt); empty for other
+/// flights.
 fn ordinary(record: &Record) -> &[Span] {
     let is_ordinary = record.upsets.is_empty()
         && record.largest_error_deg.is_some_and(|e| e <= ORDINARY_DEG)
@@ -77,7 +78,7 @@ fn calm(record: &Record) -> &[Span] {
     &record.calm
 }
 
-/// A figure with its confidence interval, from resampled vehicles.
+/// A figure with its confidence interval, which is computed by resampling vehicles.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Figure {
     pub(crate) value: f64,
@@ -190,8 +191,8 @@ impl NeedlessAlarms {
     }
 }
 
-/// Counts of upsets: those before which an alarm of a profile was on, those shortly after which one was raised, and
-/// those without such an alarm.
+/// Counts of upsets by the alarms of a profile: upsets with an alarm before them, upsets with an alarm only shortly
+/// afterwards, and upsets without an alarm.
 #[derive(Default, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct Upsets {

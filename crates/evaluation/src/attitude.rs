@@ -1,4 +1,4 @@
-//! The attitude error over a period, and the risk from which rules are learned.
+//! The attitude error over a period, and the risk that is computed from it for learning.
 
 use flagred_flightlog::Attitude;
 

@@ -169,7 +169,7 @@ pub struct BaselineObserver<'a> {
 }
 
 impl<'a> BaselineObserver<'a> {
-    /// Creates an observer for a craft. A baseline whose signal the craft does not have has no score.
+    /// Creates an observer for a craft. If the craft lacks the signal of a baseline, that baseline has no score.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! 95 % intervals of figures over flights, by resampling whole flights.
+//! Computes 95 % intervals of figures over many flights, by resampling whole flights.
 
 use crate::random::Random;
 

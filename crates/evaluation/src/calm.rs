@@ -5,7 +5,7 @@ use flagred_flightlog::Attitude;
 
 use crate::{critical::ErrorRecord, span::Span};
 
-/// The time in seconds after take-off at which calm can begin.
+/// The time from take-off, in seconds, before which no calm stretch begins.
 const AFTER_TAKE_OFF_S: f64 = 5.0;
 
 /// The minimum distance of a calm stretch from critical errors, steep tilts and unknown attitudes, in seconds.
@@ -78,8 +78,8 @@ pub fn calm_stretches(errors: &ErrorRecord, attitudes: &[(f64, Attitude)], air: 
 mod tests {
     use super::*;
 
-    /// The calm stretches of a flight of two minutes at 25 Hz. In the given periods, it has an error, a steep tilt or
-    /// an unknown attitude.
+    /// Returns the calm stretches of a flight of two minutes at 25 Hz. The arguments are the periods with an error,
+    /// with a steep tilt and with unknown attitudes.
     fn calm(error: (f64, f64), tilt: (f64, f64), none: (f64, f64)) -> Vec<[f64; 2]> {
         let is_in = |t_s: f64, (from_s, to_s): (f64, f64)| (from_s..to_s).contains(&t_s);
         let attitudes: Vec<(f64, Attitude)> = (0..=3000)

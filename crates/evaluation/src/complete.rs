@@ -27,7 +27,7 @@ impl Incomplete {
     }
 }
 
-/// Options for reading a log for learning or evaluation: the named signals, and the attitude.
+/// Returns the options for reading a log for learning or evaluation: they request the named signals and the attitude.
 pub fn complete_options(names: &[&str]) -> Options {
     let wanted = names.iter().chain(&ATTITUDE).map(|name| (*name).to_owned());
     let mut options = Options::default();
@@ -65,8 +65,8 @@ pub fn judged_by_header(flight: &Flight) -> Option<Span> {
     })
 }
 
-/// The judged time from the flight's header. Without it, each time in the air except the first seconds after take-off
-/// and the last seconds before landing.
+/// The judged time that the flight's header defines. If the header defines none, each time in the air except the
+/// first seconds after take-off and the last seconds before landing.
 pub fn judged_spans(flight: &Flight, settings: &VerdictSettings) -> Vec<Span> {
     if let Some(span) = judged_by_header(flight) {
         return Vec::from_iter((span.length_s() > 0.0).then_some(span));

@@ -27,9 +27,9 @@ const STEP_S: f64 = 0.5;
 /// window is full.
 const FIRST_STEP_S: f64 = 2.0;
 
-/// A step is quiet if there was no critical error in this time before it, in seconds.
+/// A step is quiet if no critical error occurred within this many seconds before it.
 const QUIET_S: f64 = 5.0;
-/// A step is an onset if there was no critical error in this time before it, in seconds.
+/// A step is an onset if no critical error occurred within this many seconds before it.
 const ONSET_S: f64 = 10.0;
 
 /// A baseline is reset after this time without a sample, in seconds.

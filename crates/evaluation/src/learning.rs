@@ -128,7 +128,7 @@ impl Predictor {
         Ok(Predictor { rules: Some(rules) })
     }
 
-    /// The outcome of the rules before gaps are filled.
+    /// The outcome of the rules at these inputs, before gaps are filled.
     fn outcome(&mut self, inputs: &[f64]) -> Result<Outcome, ExamineError> {
         let Some(rules) = &mut self.rules else {
             return Ok(Outcome::UNDEFINED);
@@ -172,7 +172,7 @@ const MAX_GROUPS: usize = 50;
 ///
 /// If a row is refused or the model is not suitable for learning.
 ///
-/// # Example: vehicles that were not learned from
+/// # Example: predictions for vehicles that were left out of the training rows
 /// ```
 /// use flagred_evaluation::learning::{Row, cross_validate};
 /// use flagred::gap::GapSettings;
@@ -263,7 +263,7 @@ fn fingerprint(values: &[f64]) -> u64 {
 pub struct GapComparison {
     /// The number of rules that were removed, one at a time. Rules whose gap contains no samples are not removed.
     pub rules: u32,
-    /// The errors without removing any rule: a lower bound for the methods.
+    /// The errors if no rule is removed: a lower bound for the errors of the methods.
     pub with_the_rule: MethodErrors,
     /// The errors of each method.
     pub methods: Vec<(GapMethod, MethodErrors)>,

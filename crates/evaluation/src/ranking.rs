@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::bootstrap::{Interval, bootstrap};
 
-/// A score and the outcome.
+/// The score of a case, and whether the case was critical.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Prediction {
     /// The score: finite; higher means more critical.
@@ -374,7 +374,8 @@ mod tests {
     fn intervals_agree_with_a_bootstrap_in_numpy() {
         let ranking = Ranking::new(predictions());
         let found = ranking.bootstrap(2000, 7).unwrap();
-        // Computed from 20,000 resamples of the ten groups by numpy's own generator, with the areas of scikit-learn.
+        // Computed with NumPy's random number generator from 20,000 resamples of the ten groups, with the areas of
+        // scikit-learn.
         for (found, expected) in [
             (found.roc.low, 0.6782),
             (found.roc.high, 0.7840),

@@ -1,14 +1,14 @@
-//! Computes inputs of profiles from the means and standard deviations of the commands in a table with one row for each
-//! flight.
+//! Computes inputs of profiles from a table with one row for each flight, which contains means and standard
+//! deviations of the motor commands.
 //!
-//! Such tables contain statistics of the normalised command c on the full range. Moments of a command convert exactly
-//! to the effective range, `e = (c - low) / (high - low)`. By the law of total variance, the variance over all motors
-//! and times is the variance over time of the mean of the motors, plus the mean over time of the variance between
-//! motors.
+//! These are statistics of the normalised command c on the full range. Moments of a command convert exactly to
+//! the effective range, `e = (c - low) / (high - low)`. By the law of total variance, the variance over all
+//! motors and times is the variance over time of the mean of the motors, plus the mean over time of the variance
+//! between motors.
 
 use flagred::source::{Motors, Signal, Source, Statistic};
 
-/// How an input is computed from columns, and from the limits of the effective range.
+/// A method to compute an input from columns and from the limits of the effective range.
 pub struct Recipe {
     /// The columns that the recipe reads.
     pub columns: &'static [&'static str],

@@ -54,7 +54,7 @@ pub(crate) struct Scores {
 }
 
 impl Scores {
-    /// The reason why there is no area; `cases` is the kind of cases, such as `steps`.
+    /// The reason why the areas cannot be computed; `cases` is the kind of cases, such as `steps`.
     pub(crate) fn no_area(&self, cases: &str) -> Option<String> {
         let case = cases.trim_end_matches('s');
         match (self.areas, self.cases, self.critical) {

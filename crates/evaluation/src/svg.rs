@@ -45,14 +45,15 @@ pub fn draw(evaluation: &Evaluation) -> String {
     plots_svg("ROC curves and reliability", &plots)
 }
 
-/// The name of an estimator and its area under the ROC curve.
+/// A label with the name of an estimator and its area under the ROC curve.
 fn name(evaluated: &ProfileScores) -> String {
     let area = evaluated.all.areas;
     let area = area.map_or("unknown".to_owned(), |area| format!("{:.3}", area.roc));
     format!("{} {area}", evaluated.name)
 }
 
-/// The mean risk and the critical share of a band in percent; `None` if it contains too few predictions.
+/// The mean risk and the share of critical cases in a band, in percent; `None` if the band contains too few
+/// predictions.
 fn point(band: &Band) -> Option<(f64, f64)> {
     const FEWEST: u64 = 5;
     let risk_pct = band.mean_risk_pct.filter(|_| band.predictions >= FEWEST)?;

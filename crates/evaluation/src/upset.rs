@@ -23,7 +23,7 @@ const BEFORE_S: f64 = 10.0;
 /// An alarm follows an upset if it was raised within this many seconds after the upset.
 const AFTER_S: f64 = 1.0;
 
-/// Whether an alarm was raised before an upset, just after it, or not at all.
+/// Whether an alarm was on before an upset, was raised just after it, or neither.
 ///
 /// # Example: an alarm that is on four seconds before the upset
 /// ```
@@ -69,9 +69,9 @@ impl UpsetAlarm {
     }
 }
 
-/// Returns the time at which the attitude was first lost during the flight `air`: the error over a second exceeds 30
-/// degrees, or the vehicle tilts by more than 60 degrees while its set point tilts by less than 50. `None` if it never
-/// was.
+/// Returns the time at which the attitude was first lost during the flight `air`: the error over a second exceeds
+/// 30 degrees, or the vehicle tilts by more than 60 degrees while its set point tilts by less than 50. `None` if
+/// it was never lost.
 ///
 /// Intentional flips are ignored: the times within 2 s of a set point that tilts by more than 60 degrees.
 pub fn upset_s(errors: &ErrorRecord, attitudes: &[(f64, Attitude)], air: Span) -> Option<f64> {

@@ -41,7 +41,7 @@ fn write(text: &mut String, table: &Table) {
     }
 }
 
-/// Appends a line of cells; those after the last column are not padded.
+/// Appends a line of cells; cells beyond the last column are not padded.
 fn line<'a>(
     text: &mut String,
     indent: &str,

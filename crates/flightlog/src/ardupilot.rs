@@ -25,9 +25,9 @@ fn motor_of_function(function: i64) -> Option<u16> {
     u16::try_from(number).ok()
 }
 
-/// The motors of a vehicle in order of their numbers, each with the number of its output, from 1. The outputs are
-/// those that SERVOn_FUNCTION assigns to motors. If the log has no such parameter (firmware before 3.5), each motor is
-/// on the output with the same number, and the frame determines the number of motors. `name` returns the name of an
+/// The motors of a vehicle in order of their numbers, each with the number of its output, from 1. The parameters
+/// SERVOn_FUNCTION assign outputs to motors. If the log has no such parameter (firmware before 3.5), each motor is on
+/// the output with the same number, and the frame determines the number of motors. `name` returns the name of an
 /// output in the log.
 pub(crate) fn motors(
     parameters: &Parameters,

@@ -17,7 +17,7 @@ const LATEST_S: f64 = 5e9;
 /// The maximum number of boots of a log that are recorded.
 const MAX_BOOTS: usize = 1000;
 
-/// The treatment of a message, by its timestamp.
+/// The decision how to treat a message, based on its timestamp.
 #[derive(Debug, PartialEq)]
 pub(crate) enum TimestampDecision {
     /// Accept the message, at this time.
@@ -28,7 +28,7 @@ pub(crate) enum TimestampDecision {
     Confirmed(f64, f64),
     /// The held message was wrong: drop it, and accept this one.
     Refuted(f64),
-    /// The held message was wrong, and this one is held now.
+    /// The held message was wrong: drop it, and hold this one.
     RefutedWait,
 }
 
@@ -153,8 +153,8 @@ impl Clock {
     }
 }
 
-/// Seconds since boot from 32 bits of microseconds, which wrap around after 71 minutes: the candidate nearest to the
-/// last accepted time.
+/// Seconds since boot from a 32-bit count of microseconds, which wraps around after 71 minutes. Of the possible
+/// times, the one nearest to the last accepted time is returned.
 pub(crate) fn seconds_of(micros: u32, last_s: Option<f64>) -> f64 {
     const ROUND_S: f64 = 4_294.967_296;
     let t_s = f64::from(micros) * 1e-6;

@@ -1,4 +1,4 @@
-//! `Flight`, the common type of all logs.
+//! `Flight`, the type into which logs of every format are read.
 
 use crate::{Geometry, Intervals, Parameter, Report, Series, Signal};
 
@@ -58,7 +58,7 @@ pub enum VehicleKind {
 }
 
 impl VehicleKind {
-    /// Advice for an unknown name of a kind.
+    /// Advice for a user who wrote an unknown kind of vehicle.
     pub(crate) const NAMES_HELP: &str = "write `multirotor`, `helicopter`, `plane`, `VTOL plane`, `rover`, `submarine` and `other vehicle`";
 
     /// The kind with the given name, in lower or upper case.
@@ -256,10 +256,10 @@ impl<T> Event<T> {
 /// A flight, read from a log.
 ///
 /// Times are in seconds on the log's own clock and never decrease within a series. The clock of ArduPilot and PX4
-/// logs counts from boot, and so does the clock of telemetry; if the motor commands of telemetry contain no times,
-/// its clock counts from the first packet instead. A CSV file contains its own times. If a log contains several
-/// boots of the autopilot, the clock continues from the end of the previous boot; [`Flight::boots_s`] contains the
-/// start of each boot except the first.
+/// logs counts from boot. The clock of telemetry counts from boot too, or from the first packet if the motor
+/// commands contain no times. A CSV file contains its own times. If a log contains several boots of the
+/// autopilot, the clock continues from the end of the previous boot; [`Flight::boots_s`] contains the start of
+/// each boot except the first.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -280,8 +280,8 @@ pub struct Flight {
     pub effective_range: Range,
     /// The reason why the whole range is used although the log contains limits.
     pub effective_range_doubt: Option<String>,
-    /// The assumptions about motors, their commands and ranges that the log does not record, as texts. `flagred watch`
-    /// makes the same assumptions for the vehicle. Empty without assumptions.
+    /// The assumptions about motors, commands and ranges that replace information missing from the log, as texts.
+    /// `flagred watch` makes the same assumptions for a live vehicle. Empty without assumptions.
     pub assumed: Vec<String>,
     /// The parameters of the autopilot that determine motors and ranges, and the gains, if the log contains them.
     pub parameters: Vec<Parameter>,
@@ -300,14 +300,14 @@ pub struct Flight {
     pub in_air: Option<Intervals>,
     /// The UTC time at time 0 of the log's clock, in seconds since 1970; `None` if unknown.
     pub utc_at_zero_s: Option<f64>,
-    /// The times at which the autopilot booted again within the log; empty if it booted once.
+    /// The times of all boots of the autopilot within the log except the first boot; empty if it booted once.
     pub boots_s: Vec<f64>,
     /// The times in the air at which the clock restarted, as after a reboot, or was set back. Data after them may be
     /// missing from the log.
     pub rebooted_in_air_s: Vec<f64>,
     /// The header lines of a CSV file as keys and values, in their order.
     pub header: Vec<(String, String)>,
-    /// The amount of data and damage.
+    /// The amounts of data and of damage in the log.
     pub report: Report,
 }
 

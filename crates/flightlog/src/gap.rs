@@ -44,7 +44,7 @@ pub enum Gap {
         /// The format of the log.
         format: Format,
     },
-    /// Some motors are known, but others are missing.
+    /// The outputs are known for only some of the motors.
     #[error("outputs are known for {found} of the {expected} motors only")]
     MotorsMissing {
         /// The number of motors whose outputs are known.

@@ -1,4 +1,4 @@
-//! Time intervals, such as those in the air.
+//! Time intervals, such as the times in the air.
 
 /// A time interval on the log's clock.
 #[derive(Debug, Clone, Copy, PartialEq)]

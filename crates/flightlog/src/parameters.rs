@@ -89,8 +89,8 @@ pub struct Parameter {
     pub source: String,
 }
 
-/// Whether a parameter belongs to the motors or to the loops that command them. The assignment of outputs is not
-/// included; it is part of the motors.
+/// Whether a parameter concerns the motors or the control loops that command them. Parameters that assign
+/// outputs to motors are excluded, because the assignment is recorded with each motor.
 fn is_of_motors(name: &str, throttle: &str) -> bool {
     const BEGINNINGS: [&str; 15] = [
         "MOT_PWM_",

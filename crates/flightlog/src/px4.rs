@@ -62,7 +62,7 @@ pub(crate) fn firmware(release: u32) -> String {
     format!("PX4 v{major}.{minor}.{patch}{kind}")
 }
 
-/// The number of rotors by CA_ROTOR_COUNT (1.13 and later), which the type of the vehicle may contradict.
+/// The number of rotors from CA_ROTOR_COUNT (1.13 and later), which the type of the vehicle may contradict.
 pub(crate) fn rotor_count(parameters: &Parameters) -> Option<u16> {
     let count = parameters.get("CA_ROTOR_COUNT")?;
     (1.0..=12.0).contains(&count).then_some(count as u16)

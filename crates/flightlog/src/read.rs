@@ -29,8 +29,8 @@ pub struct Options {
     /// always read, and the [`Report`](crate::Report) does not depend on this option.
     pub signals: Option<Vec<String>>,
     /// The range of the motor outputs, for a log that does not report it, such as a telemetry log without parameters.
-    /// The flight's [`assumed`](Flight::assumed) mentions this range. A log that reports its own range, or has commands
-    /// above this one, is refused ([`ReadError::Range`]).
+    /// The flight's [`assumed`](Flight::assumed) mentions this range. A log is refused ([`ReadError::Range`]) if it
+    /// reports its own range, or if its commands contradict the range given here.
     pub range: Option<PulseRange>,
 }
 

@@ -144,8 +144,8 @@ impl<'a> Signal<'a> {
         rate_hz(&known.map(|(t_s, _)| *t_s).collect::<Vec<f64>>())
     }
 
-    /// Whether values are unknown between known ones again and again, as in a table whose rows are more frequent than
-    /// the values.
+    /// Whether unknown values occur repeatedly between known values, as in a table whose rows are more frequent than
+    /// the values of the signal.
     pub fn is_sparse(&self) -> bool {
         let is_known = self.values.iter().map(|value| value.is_finite());
         let known = is_known.clone().skip_while(|known| !known);
@@ -192,8 +192,8 @@ impl Hold<'_> {
     }
 }
 
-/// The order of a row relative to the rows before it. The times of kept rows never go back: if the time of a row does,
-/// either this row or the previous one is damaged.
+/// The order of a row relative to the rows before it. The times of kept rows never go back: if the time of a row goes
+/// back, either this row or the previous one is damaged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Order {
     /// The row is later than all rows.
@@ -246,7 +246,7 @@ impl BackstepDetector {
         }
     }
 
-    /// The last time before each step back.
+    /// The last time before each backward step of the clock.
     pub(crate) fn at_s(&self) -> &[f64] {
         &self.at_s
     }

@@ -2,7 +2,8 @@
 
 use crate::{Flight, Gap};
 
-/// Margin and command over all motors and all samples in the air, on one range.
+/// Statistics of margin and command over all motors and all samples in the air, on either the effective or the
+/// full range.
 ///
 /// The margin of a command `c` is `min(c, 1 - c)`. Standard deviations are those of the population (divided by the
 /// number of values).
@@ -19,7 +20,7 @@ pub struct Statistics {
     pub margin_min: f64,
     /// The standard deviation of the margin.
     pub margin_std: f64,
-    /// The mean over the rows of the smallest margin of the motors.
+    /// The mean, over the rows, of the smallest margin among the motors.
     pub margin_mean_of_min: f64,
     /// The mean command.
     pub command_mean: f64,

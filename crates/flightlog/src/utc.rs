@@ -24,7 +24,7 @@ mod tests {
 
     #[test]
     fn leap_seconds_are_those_of_the_date() {
-        // 2016-12-31 23:59:59 UTC was GPS 1167264016, two seconds later it was midnight.
+        // 2016-12-31 23:59:59 UTC was GPS 1167264016. A leap second followed, so midnight was two seconds later.
         let (week, seconds) = (1930.0, 1_167_264_016.0 - 1930.0 * 604_800.0);
         assert_eq!(from_gps_s(week, seconds), 1_483_228_799.0);
         assert_eq!(from_gps_s(week, seconds + 2.0), 1_483_228_800.0);

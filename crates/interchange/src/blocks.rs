@@ -33,8 +33,8 @@ pub(crate) fn set_blocks(model: &mut Model, mut blocks: Vec<Block>) {
     model.blocks = blocks;
 }
 
-/// Sets the aggregation of each output. That of the first output becomes the default of the rule set; an aggregation
-/// that differs from it is stored with its output.
+/// Sets the aggregation of each output. The aggregation of the first output becomes the default of the rule set; an
+/// aggregation that differs from the default is stored with its output.
 pub(crate) fn aggregate(model: &mut Model, found: &[Option<Aggregation>]) {
     let common = found.iter().flatten().next().copied().unwrap_or_default();
     model.operators.aggregation = common;

@@ -98,7 +98,7 @@ impl Format {
         }
     }
 
-    /// The format of a text, detected from its start after comments; `None` if it is none of these formats.
+    /// The format of a text, detected from its start after comments; `None` if the text has none of these formats.
     #[must_use]
     pub fn of(text: &str) -> Option<Format> {
         let text = comments::after_comments(text);
@@ -189,8 +189,8 @@ pub struct WriteResult {
 ///
 /// # Errors
 ///
-/// The errors of the model, and content that the format cannot represent if losses are refused. With losses, the result
-/// must still be a valid rule set: it is read back.
+/// The errors of the model, and content that the format cannot represent if losses are refused. Even with losses,
+/// the result must be a valid rule set; it is read back to verify this.
 pub fn write(model: &Model, format: Format, losses: Losses) -> Result<WriteResult, Findings> {
     let invalid = fuzzy::validate(model, &fuzzy::format::Spans::default());
     if !invalid.is_empty() {

@@ -161,8 +161,8 @@ impl<'t> ModelDraft<'t> {
         (low - 0.5, high + 0.5)
     }
 
-    /// Whether another item is allowed after `count` items; otherwise an error is reported, once. Every item is
-    /// compared with the earlier ones, so the time grows with the square of their number.
+    /// Whether another item is allowed after `count` items; otherwise an error is reported, once. The number of
+    /// items is limited because each item is compared with all earlier items.
     pub(crate) fn allows_another(
         &mut self,
         count: usize,

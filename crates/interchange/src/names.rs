@@ -1,4 +1,4 @@
-//! Converts names to those that a format allows.
+//! Converts names to names that a format allows.
 
 use std::collections::{BTreeMap, BTreeSet};
 

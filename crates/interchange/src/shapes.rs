@@ -216,7 +216,8 @@ pub(crate) fn not_finite(shape: Shape, written: &[f64]) -> Option<usize> {
     }
 }
 
-/// Creates a membership function from its parameters in the order of a format, after [`not_finite`] returned `None`.
+/// Creates a membership function from its parameters in the order of a format. [`not_finite`] must have returned `None`
+/// for these parameters.
 pub(crate) fn read(format: Format, shape: Shape, written: &[f64]) -> Option<MembershipFunction> {
     use MembershipFunction as To;
     let spelling = SPELLINGS.iter().find(|known| known.shape == shape)?;

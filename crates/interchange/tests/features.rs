@@ -1,5 +1,5 @@
-//! The table of docs/interchange.md: which content of a rule set each format supports. Every cell is measured: the rule
-//! set is written and read back, and both are compared. `UPDATE_DOCUMENTS=1` writes the table.
+//! The table of docs/interchange.md: which content of a rule set each format supports. Every cell is measured: a rule
+//! set is written and read back, and the two rule sets are compared. `UPDATE_DOCUMENTS=1` writes the table.
 
 #![allow(
     clippy::expect_used,

@@ -1,5 +1,5 @@
-//! Models of other programs give the values that those programs compute. The models are not shipped: the tests search
-//! the folder `data/models` of FLAGRED_SHARED.
+//! Models of other programs give the values that those programs compute. The models are not shipped: the tests look
+//! for them in the folder `data/models` of FLAGRED_SHARED.
 
 #![allow(
     clippy::expect_used,

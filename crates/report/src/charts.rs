@@ -186,7 +186,7 @@ pub(crate) fn gap_s(estimator: &Estimator, rate_hz: Option<f64>) -> f64 {
 /// The classes of the lines of other risks.
 const OTHER_RISKS: [&str; 3] = ["value", "motor", "mean"];
 
-/// Risk and elevated risk, and the other risks of the profile; `None` if no risk is known.
+/// The curves of the risk, of the elevated risk, and of the other risks of the profile; `None` if no risk is known.
 pub(crate) fn risk(
     assessed: &Assessment,
     estimator: &Estimator,

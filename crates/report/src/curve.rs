@@ -1,4 +1,4 @@
-//! A value over time, as the data of an SVG path in the units of the values, and as text.
+//! Draws a value over time: as the data of an SVG path in the units of the values, or as text.
 
 use std::fmt::Write as _;
 

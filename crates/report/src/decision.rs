@@ -18,7 +18,8 @@ const TRIED: usize = 200;
 /// The maximum number of points of the path.
 const POINTS: usize = 600;
 
-/// The part of an input's range that is shown: the part where its terms change, and where the flight was.
+/// The part of an input's range that the map shows: it contains the values at which the terms of the input change, and
+/// the values during the flight.
 pub(super) fn focus(model: &Model, name: &str, input: usize, steps: &[Step]) -> Scale {
     let Some(variable) = model.inputs.iter().find(|known| known.name == name) else {
         return Scale::new(0.0, 1.0);
@@ -36,7 +37,7 @@ pub(super) fn focus(model: &Model, name: &str, input: usize, steps: &[Step]) -> 
 struct Slice {
     /// The indices of the inputs along the axes: x, y.
     shown: [usize; 2],
-    /// The mean of every input over the flight, at which the inputs that are not shown are held.
+    /// The mean of every input over the flight. On the map, the inputs that are not shown have these values.
     means: Vec<f64>,
 }
 

@@ -72,11 +72,11 @@ struct Vehicle<'a> {
     motors: &'a [Motor],
     /// The range of the raw commands.
     range: Option<&'a Range>,
-    /// The part of the range that is used in flight, as fractions of it.
+    /// The part of the range that is used in flight, as fractions of the whole range.
     effective_range: &'a Range,
     /// The reason why the whole range is used although the log contains limits.
     effective_range_doubt: Option<&'a str>,
-    /// The assumptions about motors, their commands and ranges that the log does not record, as texts.
+    /// The assumptions about motors, commands and ranges that replace information missing from the log, as texts.
     assumed: &'a [String],
     /// The parameters of the autopilot that determine motors and ranges, and the gains, if the log contains them.
     parameters: &'a [Parameter],

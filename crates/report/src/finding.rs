@@ -205,7 +205,7 @@ pub(crate) fn highest_other(assessed: &Assessment, risk: usize) -> Option<Peak> 
     peak(assessed, Some(output), of_steps, risk_pct)
 }
 
-/// The highest of a peak and the peaks of the findings of a risk.
+/// The highest of the given peak and the peaks of the findings about a risk.
 fn peak(
     assessed: &Assessment,
     output: Option<&str>,

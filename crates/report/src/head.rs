@@ -3,7 +3,7 @@
 use flagred::{
     flight::{Peak, Verdict},
     loaded::Loaded,
-    profile::{ErrorFrequency, Reliability},
+    profile::{ErrorFrequency, Profile},
 };
 use maud::{Markup, html};
 
@@ -36,7 +36,7 @@ pub(crate) fn about(subject: &Subject, loaded: &Loaded) -> Markup {
             p.soft { (words::damage(&flight.report)) }
         }
         @for note in words::notes(flight, assessed) { p.soft { (note) } }
-        (reliability(&loaded.estimator.profile().reliability))
+        (reliability(loaded.estimator.profile()))
     }
 }
 
@@ -170,9 +170,9 @@ fn figures(subject: &Subject) -> Markup {
 }
 
 /// How often large attitude errors followed a risk, if it was measured.
-fn reliability(rows: &[Reliability]) -> Markup {
-    let of =
-        |counts: Option<ErrorFrequency>| counts.and_then(words::share).unwrap_or("unknown".into());
+fn reliability(profile: &Profile) -> Markup {
+    let rows = &profile.reliability;
+    let of = |counts: Option<ErrorFrequency>| counts.and_then(words::share).unwrap_or("unknown".into());
     html! {
         @if !rows.is_empty() {
             details {
@@ -180,6 +180,7 @@ fn reliability(rows: &[Reliability]) -> Markup {
                 p.soft {
                     "The share of the moments with such a risk, in the flights that the rules were tested on, that were followed by an \
                      attitude error over 5 degrees within 5 s."
+                    @if !profile.other_risks.is_empty() { " This applies only to the output `" (profile.output) "`." }
                 }
                 table.rules {
                     thead { tr { th.n { "Risk" } th.n { "Real vehicles" } th.n { "Simulated vehicles" } } }

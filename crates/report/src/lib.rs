@@ -1,8 +1,8 @@
 //! Output for people about rule sets and flights, shared by all programs.
 //!
-//! Findings displayed in their text ([`diagnostics`]); an assessment in words ([`words`], [`finding`]), as one JSON
-//! document ([`document`]), as one HTML page ([`page`]) and as tables ([`steps`], [`table`]). All functions return or
-//! write text; none opens a file.
+//! It displays findings in their text ([`diagnostics`]), and describes an assessment in words ([`words`],
+//! [`finding`]), as one JSON document ([`document`]), as one HTML page ([`page`]) and as tables ([`steps`],
+//! [`table`]). All functions return or write text; none opens a file.
 
 pub mod available;
 mod charts;

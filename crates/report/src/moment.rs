@@ -59,7 +59,7 @@ pub fn moment<'a>(
     }
 }
 
-/// The latest step at or before a time, unless samples are missing after it.
+/// The latest step at or before a time; `None` if samples are missing between that step and the time.
 fn latest<'a>(estimator: &Estimator, assessed: &'a Assessment, t_s: f64) -> Option<&'a Step> {
     let after = assessed.steps.partition_point(|step| step.t_s <= t_s);
     let step = assessed.steps.get(after.checked_sub(1)?)?;

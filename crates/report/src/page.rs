@@ -1,4 +1,5 @@
-//! The report of one flight, or a comparison of several, as one self-contained HTML file, and the parts of both.
+//! HTML pages: the report of one flight, and the comparison of several flights, each as one self-contained file; also
+//! the parts that both are made of.
 
 use flagred::{flight::Peak, loaded::Loaded};
 use fuzzy::drawing::{EscapedText, Frame, SvgDocument};

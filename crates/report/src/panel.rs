@@ -55,7 +55,8 @@ pub(super) fn panel(panel: &Panel, timeline: &Timeline, input: Option<usize>) ->
     }
 }
 
-/// The number of digits for a value at the cursor, if the default does not show a thousandth of the scale.
+/// The number of digits for a value at the cursor; `None` if the default number of digits already shows a thousandth of
+/// the scale.
 fn digits(panel: &Panel) -> Option<usize> {
     let Scale { low, high } = panel.scale;
     let largest = low.abs().max(high.abs());
@@ -68,7 +69,7 @@ pub(super) fn percent(share: f64) -> String {
     number(share * 100.0, 2) + "%"
 }
 
-/// The names of the phases.
+/// Renders the names of the phases, each over the time of its phase.
 fn phases(timeline: &Timeline) -> Markup {
     let ends = |phase: &Stretch| {
         let (from, to) = (phase.start_s, phase.end_s);
@@ -82,7 +83,7 @@ fn phases(timeline: &Timeline) -> Markup {
     }
 }
 
-/// The time scale.
+/// Renders the labels of the time axis.
 fn times(timeline: &Timeline) -> Markup {
     let stretch = timeline.stretch;
     html! {

@@ -47,7 +47,7 @@ pub enum Part {
     Signals,
     /// The data that was read from the log.
     Sources,
-    /// Profile and rule set.
+    /// The texts of the profile and of the rule set.
     Texts,
 }
 
@@ -113,7 +113,7 @@ impl<'a> Report<'a> {
         shown(self.markup(part))
     }
 
-    /// Renders the curves of some signals of the log, by their names; those that the log does not have are left out.
+    /// Renders the curves of the signals with the given names; signals that the log does not have are left out.
     pub fn signals(&self, names: &[String]) -> String {
         let (flight, estimator) = (&self.subject.flight, &self.loaded.estimator);
         shown(available::panels(flight, estimator, &self.timeline, names))
@@ -185,7 +185,7 @@ pub(crate) fn shown(markup: Markup) -> String {
     visible_lines(&markup.into_string()).into_owned()
 }
 
-/// A heading with a note and panels; nothing without panels.
+/// Renders a heading with a note and panels; empty if there are no panels.
 fn section(
     title: &str,
     note: &str,
@@ -270,7 +270,7 @@ fn events(timeline: &Timeline) -> Markup {
     }
 }
 
-/// The source of the profile and of the rule set.
+/// Renders the source text of the profile and of the rule set.
 pub(crate) fn texts(loaded: &Loaded) -> Markup {
     html! {
         h2 { "Profile" } pre { (loaded.profile.text()) }

@@ -9,7 +9,7 @@ use flagred::{
 
 use crate::table::cell;
 
-/// The default distance between the steps that are shown, in seconds.
+/// The default time between the steps that are written, in seconds.
 pub const STEP_S: f64 = 0.1;
 
 /// Returns the columns of a step, each with its name and its field. The names are those in JSON; the inputs of

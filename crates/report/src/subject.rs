@@ -9,7 +9,7 @@ use crate::{charts, curve::Stretch};
 
 /// An assessed flight.
 pub struct Subject {
-    /// The name of its file.
+    /// The name of the file that contains the flight.
     pub name: String,
     /// The flight.
     pub flight: Arc<Flight>,

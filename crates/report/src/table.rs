@@ -29,7 +29,7 @@ pub fn write_flight(out: impl Write, flight: &Flight) -> io::Result<()> {
     flight.write_csv(VisibleText(out))
 }
 
-/// Makes hidden characters in written text visible, except line ends.
+/// A writer that makes hidden characters in text visible, except line ends.
 struct VisibleText<W>(W);
 
 impl<W: Write> Write for VisibleText<W> {

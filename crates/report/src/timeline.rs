@@ -1,4 +1,4 @@
-//! Curves over time on one scale, with phases behind and events over them.
+//! Curves over time on one scale, with phases behind the curves and with events.
 
 use std::fmt::Write as _;
 
@@ -6,14 +6,14 @@ use fuzzy::drawing::{EscapedText, Frame, Scale, number};
 
 use crate::curve::Stretch;
 
-/// The styles of curves over time. The page that includes them sets the colours of the classes of lines, marks and
-/// alerts, as `--c`.
+/// The styles of curves over time. The page that includes these styles sets the colours of the classes of lines,
+/// marks and alerts, in the CSS variable `--c`.
 pub(crate) const CSS: &str = include_str!("timeline.css");
 
 /// The data that all panels over the same time share.
 #[derive(Debug, Clone)]
 pub(crate) struct Timeline {
-    /// The time that is shown.
+    /// The stretch of time that is shown.
     pub(crate) stretch: Stretch,
     /// The time at which the labels show 0:00, in seconds.
     pub(crate) zero_s: f64,
@@ -28,7 +28,7 @@ pub(crate) struct Timeline {
 /// A phase, such as a flight mode, shaded behind the curves.
 #[derive(Debug, Clone)]
 pub(crate) struct Phase {
-    /// The time of the phase.
+    /// The time from the start to the end of the phase.
     pub(crate) stretch: Stretch,
     /// The name of the phase.
     pub(crate) name: String,
@@ -47,7 +47,7 @@ pub(crate) struct Line {
     pub(crate) data: String,
 }
 
-/// A value that is marked over the whole time.
+/// A value that is marked by a horizontal line.
 #[derive(Debug, Clone)]
 pub(crate) struct Mark {
     /// The value.
@@ -71,7 +71,7 @@ pub(crate) struct Panel {
     pub(crate) size: Size,
     /// The curves.
     pub(crate) lines: Vec<Line>,
-    /// The area behind the curves, with data from [`area`](crate::curve::area).
+    /// Values that are marked by horizontal lines.
     pub(crate) band: Option<Line>,
     /// Values that are marked over the whole time.
     pub(crate) marks: Vec<Mark>,
@@ -82,15 +82,15 @@ pub(crate) struct Panel {
 /// The height of a panel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Size {
-    /// A main panel.
+    /// A main panel, which is the highest.
     Large,
-    /// A panel with its own scale.
+    /// A panel of medium height.
     Medium,
     /// A small panel, one of many below each other: only the ends of its scale are labelled.
     Small,
 }
 
-/// The number of decimals that show a thousandth of a range of values.
+/// The number of decimals that are needed to show a thousandth of a range of values.
 pub(crate) fn decimals(scale: Scale) -> usize {
     let range = scale.high - scale.low;
     match range.is_finite() && range > 0.0 {

@@ -9,7 +9,7 @@ use maud::{Markup, PreEscaped, html};
 
 use crate::{clock::minutes, curve::Stretch};
 
-/// The number of points of a track; each shows the highest risk of its span of time.
+/// The maximum number of points of a track. Each point has the highest risk of its span of time.
 const POINTS: f64 = 1200.0;
 /// The mean radius of the earth, in metres.
 const EARTH_M: f64 = 6_371_008.8;
@@ -156,7 +156,7 @@ fn points(flight: &Flight, steps: &[Step], stretch: Stretch) -> Vec<Point> {
     points
 }
 
-/// The times and values of two signals where both are known.
+/// The times at which both signals are known, each with the values of both.
 fn positions((a, b): (Signal<'_>, Signal<'_>), stretch: Stretch) -> Vec<(f64, f64, f64)> {
     let mut other = b.hold();
     let all = a

@@ -190,8 +190,8 @@ fn indented(out: &mut impl Write, text: &str) -> io::Result<()> {
     writeln!(out, "     {}", visible(text))
 }
 
-/// The words for the time in which a vehicle is assessed: a vehicle without motors may not fly at all, so its time is
-/// "in use".
+/// The words for the time in which a vehicle is assessed: "in the air", or "in use" for a vehicle without motors,
+/// which may not fly at all.
 pub(crate) fn in_the_air(flight: &Flight) -> &'static str {
     match flight.motors.is_empty() {
         true => "in use",
@@ -245,7 +245,8 @@ pub fn first_spans(mut spans: impl ExactSizeIterator<Item = String>) -> String {
     }
 }
 
-/// The limitations of the verdict: ignored limits, and data omitted from a log that is too large.
+/// The limitations of the verdict, such as assumed values, unknown risks, and data omitted from a log that is too
+/// large.
 pub fn notes(flight: &Flight, assessed: &Assessment) -> Vec<String> {
     let mut notes = Vec::new();
     if let Some(doubt) = &flight.effective_range_doubt {
@@ -291,9 +292,9 @@ pub fn notes(flight: &Flight, assessed: &Assessment) -> Vec<String> {
     notes
 }
 
-/// The risks that were unknown for more than 5 % of the time, each with the reason and advice. The reason of a missing
-/// verdict is reported anyway, so a risk that is unknown for the same reason is left out, and so is the only risk of the
-/// profile if it was never known.
+/// The risks that were unknown for more than 5 % of the time, each with the reason and advice. If there is no verdict,
+/// the reason for that is reported elsewhere. Therefore a risk that is unknown for the same reason is left out, and so
+/// is the only risk of a profile if it was never known.
 fn unknown_risks(assessed: &Assessment) -> Vec<(String, Option<&'static str>)> {
     let in_air_s = assessed.summary.in_air_s;
     let is_reported = |risk: &UnknownRisk| match &assessed.verdict {
@@ -319,7 +320,7 @@ fn unknown_risks(assessed: &Assessment) -> Vec<(String, Option<&'static str>)> {
     sentences.collect()
 }
 
-/// The first of the signals that are missing from the log.
+/// The first of the given signals that is missing from the log.
 fn missing<'a>(flight: &Flight, signals: &'a [String]) -> &'a str {
     let mut signals = signals.iter();
     signals
@@ -407,14 +408,15 @@ fn at(peak: Peak) -> String {
     format!("{:.0} % at {:.1} s", peak.value_pct, peak.t_s)
 }
 
-/// Formats the share of moments that were followed by an error: `54 % of 1280`; `None` if there are no moments.
+/// Formats the share of moments that were followed by an error, and the number of moments: `54 % of 1280`; `None` if
+/// there are no moments.
 pub(crate) fn share(counts: ErrorFrequency) -> Option<String> {
     let share_pct = counts.share_pct()?;
     Some(format!("{share_pct:.0} % of {}", counts.moments))
 }
 
-/// How often errors followed moments with a risk as high as the highest risk of the flight; `None` if it was not
-/// measured.
+/// Describes how often errors followed moments with a risk as high as the highest risk of the flight; `None` if
+/// this was not measured.
 fn reliability(summary: &Summary, profile: &Profile) -> Option<String> {
     let highest_pct = summary.risk_max?.value_pct;
     let mut rows = profile.reliability.iter().rev();

@@ -45,7 +45,7 @@ pub struct Clusters {
 /// The reason why rows cannot be clustered.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ClusterError {
-    /// Fewer than two clusters.
+    /// Fewer than two clusters are requested.
     #[error("`clusters` is {0}; it must be at least 2")]
     Clusters(usize),
     /// The fuzzifier is not above 1.

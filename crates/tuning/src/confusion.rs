@@ -7,7 +7,7 @@ use crate::Data;
 pub struct Confusion {
     /// The classes, ascending: the values of the output that occur in the rows.
     pub classes: Vec<f64>,
-    /// For each class, the numbers of its rows with each predicted class.
+    /// For each class, the number of its rows for each predicted class.
     pub rows: Vec<Vec<usize>>,
 }
 

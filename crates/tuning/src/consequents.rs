@@ -14,11 +14,11 @@ use crate::{
     parameters::{UNBOUNDED, bounds},
 };
 
-/// The ridge, as a share of the diagonal elements: see [`ridged`]. Numbers that the rows do not determine keep their
-/// current values because of it.
+/// The ridge, as a share of the diagonal elements: see [`ridged`]. Because of the ridge, numbers that the rows do
+/// not determine keep their current values.
 const RIDGE: f64 = 1e-8;
 
-/// The largest ridge. It shortens the steps of the numbers that the rows do determine by about this share.
+/// The largest ridge. It shortens the steps of the numbers that the rows determine by about this share.
 const LARGEST_RIDGE: f64 = 1e-4;
 
 /// The number of rows whose firing strengths are in memory at a time.
@@ -171,7 +171,7 @@ fn within(
     steps
 }
 
-/// Solves `(squares + ridge) x = products`, where the ridge is that of [`ridged`] and grows until the matrix is
+/// Solves `(squares + ridge) x = products`. The ridge is added by [`ridged`], and increased until the matrix is
 /// positive definite.
 pub(crate) fn solve(
     squares: DMatrix<f64>,
@@ -192,8 +192,8 @@ pub(crate) fn solve(
     None
 }
 
-/// Adds a ridge to a matrix: each diagonal element is increased by the share `ridge` of the sum of itself and a
-/// thousandth of the largest one.
+/// Adds a ridge to a matrix: each diagonal element is increased by the share `ridge` of the sum of the element
+/// and a thousandth of the largest diagonal element.
 fn ridged(mut squares: DMatrix<f64>, ridge: f64) -> DMatrix<f64> {
     let largest = squares.diagonal().max();
     for i in 0..squares.nrows() {
@@ -202,9 +202,10 @@ fn ridged(mut squares: DMatrix<f64>, ridge: f64) -> DMatrix<f64> {
     squares
 }
 
-/// Returns a model with one output for each term that the rules conclude, and the indices of these terms. The value
-/// of an output is the firing strength of the rules that conclude its term. The model has the same rules, but they
-/// conclude the constant 1 of these outputs.
+/// Returns a model that computes firing strengths, and the indices of the terms that the rules conclude. The model
+/// has one output for each of these terms. The value of the output is the firing strength of the rules that
+/// conclude the term. The rules are those of the original model, but instead of a term they conclude the constant 1
+/// of the term's output.
 fn probe(model: &Model) -> Option<(Model, Vec<usize>)> {
     let output = model.outputs.first()?;
     let mut probe = model.clone();
@@ -295,7 +296,7 @@ impl Consequent {
         self.constant + terms.sum::<f64>()
     }
 
-    /// The factor of each number that may change: the input for a coefficient, 1 for the constant.
+    /// The factor of each number that may change: the value of the input for a coefficient, 1 for the constant.
     fn factors(&self, x: &dyn Fn(usize) -> f64) -> impl Iterator<Item = f64> {
         let inputs = self.coefficients.iter().map(|(input, _)| x(*input));
         inputs.chain([1.0]).take(self.free())

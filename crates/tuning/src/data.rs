@@ -12,7 +12,7 @@ use crate::{Loss, TuneError};
 /// Rows, stored as columns.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Data {
-    /// One column for each input of the model, in its order.
+    /// One column for each input of the model, in the order of the model.
     pub inputs: Vec<Vec<f64>>,
     /// The true output of each row: a value of the output; for [`Loss::Log`] and [`Loss::Ranking`] 0 or 1.
     pub truths: Vec<f64>,
@@ -171,7 +171,7 @@ pub(crate) fn target(model: &Model) -> Result<usize, TuneError> {
     }
 }
 
-/// The minimum and maximum.
+/// The minimum and maximum of a column.
 pub(crate) fn range(column: &[f64]) -> (f64, f64) {
     let of = |(low, high): (f64, f64), x: &f64| (low.min(*x), high.max(*x));
     column.iter().fold((f64::INFINITY, f64::NEG_INFINITY), of)

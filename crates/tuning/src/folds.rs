@@ -6,7 +6,7 @@ use fastrand::Rng;
 
 use crate::Data;
 
-/// A figure with a 95 % interval from resampled groups (or rows, without groups).
+/// A figure with a 95 % interval from resampled groups, or from resampled rows if there are no groups.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
     /// The figure for all rows.
@@ -64,7 +64,8 @@ impl Folds {
         ]
     }
 
-    /// The figures for all rows, with their intervals. `figures` receives the truths and the weights of the rows.
+    /// Returns the figures for all rows, each with its interval. `figures` computes them from the truths and the
+    /// weights of rows.
     pub(crate) fn intervals<const N: usize>(
         mut self,
         data: &Data,

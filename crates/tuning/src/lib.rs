@@ -58,7 +58,7 @@ pub struct TuneResult {
     pub before: f64,
     /// The loss of the tuned model.
     pub after: f64,
-    /// The number of rows for which the tuned model has no value; they count as the middle of the range.
+    /// The number of rows for which the tuned model has no value; the middle of the range counts as their prediction.
     pub without_value: usize,
     /// The numbers that changed.
     pub moved: Vec<ChangedNumber>,
@@ -72,9 +72,9 @@ pub struct TuneResult {
 /// The progress of a search.
 #[derive(Debug)]
 pub struct Progress<'a> {
-    /// The start, counted from 1.
+    /// The number of the start, from 1.
     pub start: u32,
-    /// The step of this start, counted from 1.
+    /// The number of the step within this start, from 1.
     pub iteration: u32,
     /// The loss of the best model so far, over all starts.
     pub loss: f64,

@@ -1,6 +1,6 @@
 //! Losses of predictions, and their derivatives with respect to each prediction.
 //!
-//! Predictions and truths are positions in the range of the output here, from 0 to 1.
+//! Here, predictions and truths are positions in the range of the output, from 0 to 1.
 
 use crate::{Loss, data::Data};
 
@@ -53,7 +53,7 @@ pub(crate) fn slopes(loss: Loss, predictions: &[f64], truths: &[f64], data: &Dat
     slopes
 }
 
-/// The scale of [`Loss::Ranking`], as a share of the range.
+/// The distance `s` in [`Loss::Ranking`], as a share of the range.
 const SCALE: f64 = 0.02;
 
 /// The number of positions for which pairs are summed; the sums are interpolated linearly between them.
@@ -228,7 +228,7 @@ mod tests {
             ..Data::default()
         };
         let wrong = measure(Loss::Ranking, &[0.9, 0.2, 0.2, 0.3], &truths, &data, 1.0);
-        // Of four pairs one is in the wrong order and one is equal.
+        // Of the four pairs, one is in the wrong order, and one has equal predictions, which counts half.
         assert_eq!(wrong, 1.5 / 4.0);
     }
 

@@ -202,9 +202,9 @@ fn shape(variable: &str, width: f64, term: &mut Term, value: &mut Change<'_>) {
 }
 
 /// Returns the nearest number with `digits` significant digits on each side of `value`, or only `value` if it has no
-/// more digits. For a position, `width` is the width of its range: if that is smaller than the position, it
-/// determines the last digit. A position near 0 is not rounded more finely than its range requires: three digits are at
-/// most 0.05 % of the width.
+/// more digits than that. If the value is a position, `width` is the width of its range, otherwise infinity. If the
+/// width is smaller than the position, the digits are counted from the first digit of the width. A position near 0 is
+/// not rounded more finely than its range requires: three digits are at most 0.05 % of the width.
 pub(crate) fn round(value: f64, digits: u32, width: f64) -> Vec<f64> {
     if value == 0.0 || !value.is_finite() {
         return vec![value];
@@ -229,7 +229,8 @@ pub(crate) fn round(value: f64, digits: u32, width: f64) -> Vec<f64> {
     rounded
 }
 
-/// A multiple of a power of ten. It is parsed from text, so that 0.3 is exactly 0.3 and not 3 times a tenth.
+/// Returns `steps` times the power of ten with the given exponent. The result is parsed from text, so that 0.3 is
+/// exactly 0.3 and not 3 times a tenth.
 pub(crate) fn decimal(steps: f64, exponent: i32) -> Option<f64> {
     let parsed: f64 = format!("{steps:.0}e{exponent}").parse().ok()?;
     // Adding 0 removes the sign of -0.
@@ -250,8 +251,8 @@ mod tests {
         assert_eq!(round(99.7, 2, free), [99.0, 100.0]);
         // For example, a pressure from 950 to 1050.
         assert_eq!(round(1013.27, 3, 100.0), [1013.0, 1014.0]);
-        // Rounding to two digits changes a position by at most 0.5 % of the range, to three digits
-        // by at most 0.05 %.
+        // Rounding to two digits changes a position by at most 0.5 % of the range, and rounding to three digits by at most
+        // 0.05 %.
         assert_eq!(round(0.3271, 2, 100.0), [0.3, 0.4]);
         assert_eq!(round(0.000949, 3, 40.0), [0.0, 0.01]);
         assert_eq!(round(-0.000949, 3, 40.0), [-0.01, 0.0]);

@@ -10,7 +10,7 @@ use crate::{
     settings::Settings,
 };
 
-/// Rows, a loss and constraints.
+/// A loss on given rows, and the constraints that a model must satisfy.
 pub(crate) struct Objective<'a> {
     data: &'a Data,
     settings: &'a Settings,
@@ -107,7 +107,7 @@ impl<'a> Objective<'a> {
         self.measure_of(&point.predictions, self.data)
     }
 
-    /// Predictions as values of the output.
+    /// Converts predictions, which are positions in the range of the output, to values of the output.
     pub(crate) fn values(&self, predictions: &[f64]) -> Vec<f64> {
         let value = |prediction: &f64| self.low + prediction * self.width;
         predictions.iter().map(value).collect()

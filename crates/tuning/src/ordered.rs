@@ -16,7 +16,8 @@ pub(crate) struct OrderedPositions {
 struct Segment {
     from: f64,
     to: f64,
-    /// Whether `from` and `to` are the ends of the range, which a position may reach, rather than fixed positions.
+    /// For `from` and for `to`: whether it is an end of the range, which a position may reach, rather than a fixed
+    /// position.
     is_end: [bool; 2],
     /// The distances between successive positions, including the ends: `None` if it stays 0, otherwise the minimum
     /// distance and the initial share.
@@ -86,7 +87,7 @@ impl OrderedPositions {
         self.segments.iter().all(|segment| {
             let inner = segment.distances.len().saturating_sub(1).min(rest.len());
             let (own, behind) = rest.split_at(inner);
-            // The positions of the segment are followed by the fixed one that ends it.
+            // The positions of the segment are followed by the fixed position that ends it.
             rest = behind.get(1..).unwrap_or_default();
             segment.contains(own) && behind.first().is_none_or(|fixed| *fixed == segment.to)
         })
@@ -113,7 +114,8 @@ impl Segment {
         })
     }
 
-    /// A segment of positions, each with the minimum distance from the previous one; the first and the last are fixed.
+    /// Creates a segment from positions, each with the minimum distance from the previous one. The first and the last
+    /// position are fixed.
     fn new(positions: &[(f64, f64)], is_end: [bool; 2]) -> Segment {
         let least = |pair: &[(f64, f64)]| {
             let [(before, _), (position, apart)] = *pair else {

@@ -1,5 +1,5 @@
 //! The parameters of a model that may change, as free numbers. With any values of these numbers, the model satisfies
-//! its constraints; with zeros, it is the original model.
+//! its constraints; if all of them are 0, it is the original model.
 
 use fuzzy::{
     Model,
@@ -66,8 +66,8 @@ struct AnchoredTerm {
 enum ParameterLink {
     /// The anchor itself.
     Anchor,
-    /// A position: the parameter with this index plus [`factor`] times a distance. A distance of 0 (a vertical edge)
-    /// stays 0.
+    /// A position: the parameter with this index plus [`factor`] times this distance. A distance of 0 (a vertical
+    /// edge) stays 0.
     Beyond(usize, f64),
     /// A width or a slope: this number times [`factor`]. A slope of 0 stays 0.
     Scale(f64),
@@ -85,7 +85,7 @@ fn factor(z: f64) -> f64 {
     (most * (z / most).tanh()).exp()
 }
 
-/// The bounds of an unbounded number.
+/// The bounds of a number that may have any value.
 pub(crate) const UNBOUNDED: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 
 /// The bounds of the constant of a term: the range of its output, extended to the current value if that is outside. With
@@ -104,8 +104,8 @@ pub(crate) fn bounds(variable: &Variable, term: &Term, beyond_range: bool) -> (f
     )
 }
 
-/// The largest weight from which the search starts, and 1 minus the smallest: the search could not change a weight of
-/// exactly 0 or 1.
+/// The largest weight from which the search starts; the smallest one is 1 minus this. The search could not change a
+/// weight of exactly 0 or 1.
 const LARGEST_WEIGHT: f64 = 0.98;
 
 impl Parameters {

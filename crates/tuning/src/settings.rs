@@ -13,10 +13,11 @@ pub enum Loss {
     /// range of the output, from 0 to 1 and at least [`Loss::MIN_PROBABILITY`] away from both ends. Truths are 0 and
     /// 1.
     Log,
-    /// The share of pairs of a row with truth 1 and a row with truth 0 whose predictions are in the wrong order; equal
-    /// ones count half. It is 1 minus the area under the ROC curve. Truths are 0 and 1. Because it is a step function,
-    /// the search minimises the mean of `ln(1 + exp(-d / s))` over the pairs instead, with the distance `d` of the
-    /// predictions and 2 % of the range as `s`.
+    /// The share of wrongly ordered pairs among all pairs of a row with truth 1 and a row with truth 0. A pair is
+    /// wrongly ordered if its predictions are; equal predictions count half. The loss is 1 minus the area under the
+    /// ROC curve. Truths are 0 and 1. Because this share is a step function, the search minimises the mean of `ln(1 +
+    /// exp(-d / s))` over the pairs instead, where `d` is the prediction for the row with truth 1 minus the prediction
+    /// for the row with truth 0, and `s` is 2 % of the range.
     Ranking,
 }
 
@@ -31,7 +32,7 @@ impl Loss {
 pub struct Settings {
     /// The loss to minimise.
     pub loss: Loss,
-    /// The variables, or terms as `variable.term`, that may change; if empty, all may.
+    /// The variables, or terms as `variable.term`, that may change; if empty, all of them may change.
     pub only: Vec<String>,
     /// The variables, or terms as `variable.term`, that must not change.
     pub fix: Vec<String>,
@@ -125,7 +126,7 @@ pub enum TuneError {
     /// There are no rows.
     #[error("there are no rows")]
     NoRows,
-    /// Columns are missing, too many, or of different lengths.
+    /// There are too few or too many columns, or the columns have different lengths.
     #[error("{what}")]
     Columns {
         /// The problem.

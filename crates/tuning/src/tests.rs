@@ -237,7 +237,8 @@ fn both_losses_improve_classification() {
     }
 }
 
-/// The last point of a curve equals the cross-validation, and the loss on noisy rows decreases with their number.
+/// The last point of a learning curve is the loss of the cross-validation, and the loss on noisy rows decreases with
+/// the number of rows.
 #[test]
 fn a_learning_curve_ends_with_the_validation_and_falls() {
     let truth = tipper([2.0, 6.0, 8.0], [5.0, 12.0, 28.0]);
@@ -269,7 +270,7 @@ fn a_learning_curve_ends_with_the_validation_and_falls() {
     );
 }
 
-/// Consequents tuned with log loss turn predictions that were far too high into probabilities.
+/// Predictions that were far too high become calibrated probabilities if the consequents are tuned with log loss.
 #[test]
 fn consequents_tuned_by_log_loss_are_calibrated_on_held_out_rows() {
     let data = classes(800);
@@ -324,7 +325,7 @@ fn wrong_rows_are_errors() {
         error(&same, Loss::Ranking),
         "all rows have the same outcome"
     );
-    // Only rows of one truth have a weight.
+    // Only the rows with truth 1 have a weight above 0.
     let mut one = classes(20);
     one.weights = one.truths.clone();
     assert_eq!(error(&one, Loss::Ranking), "all rows have the same outcome");
@@ -453,7 +454,7 @@ fn constants_are_optimal_within_the_range() {
     assert_eq!(numbers(&outside.unwrap().model)[3].value, 12.0);
 }
 
-/// All targets are far above the range, so both constants end at its upper end.
+/// All targets are far above the range, so both constants end at their upper bound.
 #[test]
 fn constants_end_at_the_end_of_the_range_for_targets_far_beyond_it() {
     let heat: Vec<f64> = (0..=20).map(|i| f64::from(i) / 2.0).collect();
@@ -478,8 +479,8 @@ fn constants_end_at_the_end_of_the_range_for_targets_far_beyond_it() {
     }
 }
 
-/// The rows pull one constant far beyond the range, and the other to a value inside. The first does not affect the
-/// second.
+/// The rows pull one constant far beyond the range, and the other constant to a value inside the range. The first
+/// constant does not affect the second.
 #[test]
 fn a_constant_at_its_limit_does_not_affect_the_others() {
     let heat: Vec<f64> = (0..=20).map(|i| f64::from(i) / 2.0).collect();

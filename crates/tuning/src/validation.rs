@@ -21,7 +21,7 @@ pub struct Validation {
     pub folds: usize,
     /// The loss of the original model; see [`crate::Loss`].
     pub before: Interval,
-    /// The loss when each fold is predicted by a model tuned on the others.
+    /// The loss when each fold is predicted by a model tuned on the other folds.
     pub after: Interval,
     /// The reduction of the loss.
     pub gain: Interval,

@@ -62,7 +62,8 @@ pub struct Plan<'a> {
     pub name: &'a str,
     /// The rule set.
     pub rules: Rules<'a>,
-    /// The index of the output that is the risk.
+    /// For each input of the rule set, its index among the inputs of the profile; `u32::MAX` for an input that the risk
+    /// does not depend on.
     pub output: u32,
     /// For each input of the rule set its index among the inputs of the profile; `u32::MAX` for an input that the risk
     /// does not depend on.
@@ -79,7 +80,7 @@ pub struct Plan<'a> {
     pub coverage_below: f64,
     /// The values that fill gaps of the rules; `None` if the rules cover nothing.
     pub filled: Option<FilledKnots<'a>>,
-    /// The propositions of all rules, grouped by rule, the most specific of each rule first.
+    /// The propositions of all rules, grouped by rule. Within each rule, the most specific proposition comes first.
     pub propositions: &'a [Proposition],
 }
 

@@ -61,7 +61,7 @@ pub(super) fn thresholds(
         let omitted = omitted_terms(estimator.model(), &profile.output);
         match omitted.first().filter(|_| levels.iter().any(is_always)) {
             None => found.extend(reached),
-            // This is the cause of all these findings.
+            // The missing rule causes all these findings, so it is reported instead of them.
             Some(proposition) => {
                 let output = &profile.output;
                 let message = format!(

@@ -18,10 +18,11 @@ use crate::{
     verdict::{Level, Threshold},
 };
 
-/// The budget of a search: the number of evaluated rules and terms, which take some tens of milliseconds.
+/// The budget of a search: the maximum number of rules and terms that are evaluated, which takes some tens of
+/// milliseconds.
 const MAX_STEPS: usize = 3_000_000;
-/// The number of equal steps into which an input's range is divided; their ends are tried, in addition to the points of
-/// the terms.
+/// The number of equal steps into which an input's range is divided. The ends of the steps are tried, in addition to
+/// the points of the terms.
 const STEPS: u32 = 32;
 
 /// The highest risk that an input reaches alone.
@@ -35,11 +36,11 @@ pub struct InputRisk {
     pub input: String,
     /// The value at which the risk is highest.
     pub value: f64,
-    /// The term to which this value belongs most; `None` if it belongs to none.
+    /// The term to which this value belongs most; `None` if the value belongs to no term.
     pub term: Option<String>,
-    /// The output that is the risk; if there are several, the one that raises the highest level.
+    /// The output that is the risk; if the profile has several risks, the risk that raises the highest level.
     pub risk_output: String,
-    /// That risk in %.
+    /// The highest risk, in %.
     pub risk_pct: f64,
     /// The risk while all inputs are calm, in %.
     pub calm_risk_pct: f64,
@@ -279,7 +280,7 @@ impl<'e> OutvotedSearch<'e> {
 
 /// The values of an input to try: evenly spaced values over its range, and the points of its terms within it.
 fn values(variable: &Variable) -> Vec<f64> {
-    /// The maximum number of points; further points are thinned.
+    /// The maximum number of points; if there are more, they are thinned.
     const MAX_POINTS: usize = 200;
     let (low, high) = (variable.low, variable.high);
     let even = (0..=STEPS).map(|i| {

@@ -87,7 +87,7 @@ pub struct UnknownRisk {
 /// The time for which a risk was unknown for one reason.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct UnknownTime {
-    /// The index of the risk: 0 is that of the profile, and the others follow.
+    /// The index of the risk: 0 is the first risk of the profile, and its other risks follow from 1.
     pub(super) risk: usize,
     pub(super) reason: Unknown,
     pub(super) total_s: f64,

@@ -11,8 +11,8 @@ const LARGEST_SHARE: f64 = 1.0 / 16.0;
 /// The data that was lost in the air so far.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Losses {
-    /// The latest period with unknown motor commands; `None` once the known time in and after it is as long as the
-    /// unknown time.
+    /// The latest period with unknown motor commands; `None` as soon as the known time within and after the period
+    /// is as long as the unknown time.
     latest: Option<MotorLoss>,
     longest: Option<MotorLoss>,
     /// All periods with unknown motor commands, merged into one.

@@ -62,8 +62,8 @@ pub(super) struct UncertainPeak {
 
 impl UncertainPeak {
     /// Stores the intervals of the inputs after a sample if the risk of this sample is the highest so far of the open
-    /// finding, or of a finding that may be opened. `peaks` has one element for each of the `ended` findings, and then
-    /// this one.
+    /// finding, or of a finding that may be opened. `peaks` has one element for each of the `ended` findings that had
+    /// a peak, and a last element for the open finding or for the one that may be opened.
     pub(super) fn keep(
         peaks: &mut Vec<UncertainPeak>,
         ended: &[Finding],
@@ -79,7 +79,7 @@ impl UncertainPeak {
         if last.is_some_and(|last| last.from_s == from_s && last.value_pct >= value_pct) {
             return;
         }
-        // The last one is replaced unless it belongs to a finding that has ended.
+        // The last element is replaced unless it belongs to a finding that has ended.
         let is_replaced = |last: &mut UncertainPeak| {
             let mut ended = ended.iter().rev();
             last.from_s == from_s || !ended.any(|finding| finding.from_s == last.from_s)

@@ -122,8 +122,8 @@ pub enum Reason {
     /// There were too few samples in the air.
     #[error("the flight has too few samples")]
     NoSamples,
-    /// The samples of a flight without motors are further apart than the profile's `longest_gap_s`, so that each
-    /// follows a gap.
+    /// The samples of a flight without motors are further apart than the profile's `longest_gap_s`, so every
+    /// sample follows a gap.
     #[error(
         "the samples are {step_s} s apart, but the profile counts more than {longest_gap_s} s as a gap"
     )]

@@ -27,7 +27,7 @@ pub struct Words {
     /// A stable identifier for use by programs: lower-case letters, digits and `_`.
     pub code: String,
     /// A few words, for messages limited to 50 characters. The second part can be left out, because
-    /// the first is also true alone.
+    /// the first part is also true without it.
     pub brief: [String; 2],
     /// What happened, and what it means.
     pub text: String,

@@ -260,7 +260,7 @@ fn little_reserve_is_reported_while_it_lasts_and_ends_with_the_flight() {
     assert_eq!(last(&landed).level, None);
 }
 
-/// With so few samples, the risk is always unknown.
+/// The samples are so far apart that the risk is always unknown.
 #[test]
 fn little_reserve_is_reported_where_the_risk_is_unknown() {
     let flight = noticing(NoticeSettings {

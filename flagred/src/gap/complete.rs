@@ -86,8 +86,8 @@ struct GapSearch<'a> {
 }
 
 impl GapSearch<'_> {
-    /// Whether all cells that have the intervals in `cell` for the first inputs are covered. A rule that reads no
-    /// further input covers all of them at once.
+    /// Whether all cells that have the intervals in `cell` for the first inputs are covered. A rule that reads
+    /// none of the remaining inputs covers all of these cells at once, or none of them.
     fn is_covered(&mut self) -> bool {
         self.steps += self.rules.len();
         let known = self.cell.len();

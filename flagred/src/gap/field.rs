@@ -44,9 +44,9 @@ impl Field<'_> {
         knots.iter().flat_map(|knot| self.point(*knot)).collect()
     }
 
-    /// The neighbours of a knot, each with the area of the wall between the two divided by their distance. The cell
-    /// around a knot reaches halfway to its neighbours.
-    pub(super) fn beside(&self, knot: usize) -> Vec<(usize, f64)> {
+    /// The neighbours of a knot, each with the area of the wall between the two cells divided by the distance of
+    /// the two knots. The cell around a knot reaches halfway to its neighbours.
+    pub(super) fn neighbours(&self, knot: usize) -> Vec<(usize, f64)> {
         let knots = self.knots;
         let width = |axis: usize| {
             let (index, coordinates) = (knots.index_along(knot, axis), &self.coordinates[axis]);
@@ -64,7 +64,7 @@ impl Field<'_> {
             }
         };
         let cell: f64 = (0..self.coordinates.len()).map(width).product();
-        let mut beside = Vec::new();
+        let mut neighbours = Vec::new();
         for (axis, coordinates) in self.coordinates.iter().enumerate() {
             for other in [knots.previous(knot, axis), knots.next(knot, axis)] {
                 let Some(other) = other else {
@@ -72,9 +72,9 @@ impl Field<'_> {
                 };
                 let step = coordinates[knots.index_along(other, axis)]
                     - coordinates[knots.index_along(knot, axis)];
-                beside.push((other, cell / width(axis) / step.abs()));
+                neighbours.push((other, cell / width(axis) / step.abs()));
             }
         }
-        beside
+        neighbours
     }
 }

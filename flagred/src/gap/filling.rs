@@ -101,8 +101,8 @@ impl Filling {
     }
 
     /// The value at a point in a gap, with one coordinate for each input; beyond the outermost peaks it is constant.
-    /// `None` if the rules leave no gap or cover nothing, if the output depends on too many inputs (over 15 of two
-    /// terms each), if the point has another number of coordinates, or if one is NaN.
+    /// `None` if the rules leave no gap or cover nothing, if the output depends on too many inputs (more than 15
+    /// inputs with two terms each), if the point has another number of coordinates, or if one is NaN.
     pub fn read(&self, point: &[f64]) -> Option<Reading> {
         self.borrowed()?.read(point)
     }

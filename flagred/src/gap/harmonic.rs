@@ -1,8 +1,8 @@
 //! The harmonic filling: the solution of Laplace's equation in the gap, with the surrounding covered knots fixed.
 //!
-//! Every filled value is the mean of its neighbours, each weighted with the area of the wall between the two divided by
-//! their distance (finite volumes). So there is no extremum inside the gap, and the solution cannot overshoot. The
-//! outer ends of the grid have no flux across them.
+//! Every filled value is the mean of its neighbours, each weighted with the area of the wall between the two cells
+//! divided by the distance of the two knots (finite volumes). So there is no extremum inside the gap, and the
+//! solution cannot overshoot. The outer ends of the grid have no flux across them.
 
 use super::field::Field;
 
@@ -28,13 +28,13 @@ pub(super) fn fill(field: &mut Field) {
     let gap: Vec<(usize, Vec<(usize, f64)>)> = field
         .gap()
         .into_iter()
-        .map(|knot| (knot, field.beside(knot)))
+        .map(|knot| (knot, field.neighbours(knot)))
         .collect();
     for _ in 0..MAX_SWEEPS {
         let mut largest = 0.0_f64;
-        for (knot, beside) in &gap {
-            let weights: f64 = beside.iter().map(|(_, weight)| weight).sum();
-            let sum: f64 = beside
+        for (knot, neighbours) in &gap {
+            let weights: f64 = neighbours.iter().map(|(_, weight)| weight).sum();
+            let sum: f64 = neighbours
                 .iter()
                 .map(|(k, weight)| weight * field.values[*k])
                 .sum();

@@ -5,8 +5,8 @@ use super::{field::Field, neighbours::Tree};
 /// Fills the knots that are not covered.
 pub(super) fn fill(field: &mut Field, power: f64, neighbours: usize) {
     let at_edge = |knot: &usize| {
-        let beside = field.beside(*knot);
-        beside.iter().any(|(other, _)| !field.covered[*other])
+        let neighbours = field.neighbours(*knot);
+        neighbours.iter().any(|(other, _)| !field.covered[*other])
     };
     let edge: Vec<usize> = field
         .known_highest_first()

@@ -13,11 +13,11 @@ use super::filled::read;
 /// any number of inputs.
 const MAX_KNOTS: usize = 40_000;
 
-/// A grid over the inputs of a rule set, with a coordinate at the peak of every term and one halfway between each two
-/// peaks.
+/// A grid over the inputs of a rule set, with a coordinate at the peak of every term and a coordinate halfway
+/// between every two neighbouring peaks.
 ///
-/// At a peak a single term applies. Halfway between two peaks both terms apply equally, and there the gap of a missing
-/// rule ends.
+/// At a peak a single term applies. Halfway between two peaks both terms apply equally, so the gap that a missing
+/// rule leaves ends there.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Knots {
     /// The coordinates of the knots along each input, ascending.
@@ -30,8 +30,8 @@ pub(super) struct Knots {
 }
 
 impl Knots {
-    /// The grid over the part of each input in which terms change; beyond it the rules cannot distinguish points. An
-    /// input whose name is not in `read` has one coordinate.
+    /// The grid over the part of each input in which terms change; beyond this part the rules cannot distinguish
+    /// points. An input whose name is not in `read` has one coordinate.
     ///
     /// `None` if even the peaks are too many, as for 16 inputs of two terms each.
     pub(super) fn of(model: &Model, read: &[&str]) -> Option<Knots> {

@@ -4,7 +4,7 @@ use fuzzy::map::DecisionMap;
 
 use super::{Filling, Reading};
 
-/// A decision map without gaps. Cells that rules cover have the value of the rules, the others are filled.
+/// A decision map without gaps. Cells that rules cover have the value that the rules give; all other cells are filled.
 #[derive(Debug, Clone)]
 pub struct FilledMap {
     map: DecisionMap,
@@ -22,7 +22,8 @@ impl FilledMap {
         &self.map
     }
 
-    /// Whether a cell is filled and not computed by rules.
+    /// Whether the value of a cell comes from filling and not from rules: the cell is in a gap, or the rules give it no
+    /// value.
     pub fn is_filled(&self, cell: usize) -> bool {
         self.filling.is_gap(self.map.coverage(cell)) || self.map.value(cell).is_none()
     }

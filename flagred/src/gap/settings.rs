@@ -18,7 +18,7 @@ use super::complete::is_plain;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum GapMethod {
-    /// The value of the nearest covered knot; of equally near ones, the highest value.
+    /// The value of the nearest covered knot; if several knots are equally near, the highest of their values.
     Nearest,
     /// `sum(v / d^power) / sum(1 / d^power)` over the nearest covered knots at the edge of the gap.
     ///

@@ -186,8 +186,8 @@ pub struct ProfileInput {
 }
 
 /// The division of an input by another input of the profile. The value of the input is `x / max(per, at_least)`, where
-/// `x` is the value of its source. The other input must not be a ratio itself, and the rule set does not need to have
-/// it.
+/// `x` is the value of its source. The other input must not be a ratio itself, and does not need to be an input of the
+/// rule set.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ratio {
     /// The name of the input to divide by.
@@ -197,8 +197,8 @@ pub struct Ratio {
 }
 
 impl Profile {
-    /// The channels for the samples of a craft, with the inputs of the profile followed by the inputs of `more`. The
-    /// error is the name of a missing signal, or of a missing input of a ratio.
+    /// Returns the channels for the samples of a craft, and the inputs: the inputs of the profile, followed by one
+    /// input for each source in `more`. The error is the name of a missing signal, or of a missing input of a ratio.
     pub(crate) fn channels<'a>(
         &'a self,
         more: &'a [Source],

@@ -27,7 +27,7 @@ pub(crate) struct Alert {
 /// The margin above which a motor cannot be the cause.
 const NEAR_LIMIT: f64 = 0.1;
 
-/// The changes by a sample.
+/// The changes that a sample causes.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Step {
     pub(crate) change: Option<Level>,
@@ -71,8 +71,8 @@ impl Alert {
         self.finding
     }
 
-    /// The beginning in seconds and the highest risk in % of the open finding, or of the finding that begins if a
-    /// threshold stays reached.
+    /// The beginning in seconds and the highest risk in % of the open finding, or of the finding that will be
+    /// opened if a threshold stays reached.
     #[cfg(feature = "std")]
     pub(crate) fn peak(&self) -> Option<(f64, f64)> {
         let opened_s = self.finding.map(|finding| finding.from_s);
@@ -428,7 +428,8 @@ mod tests {
         let finding = flown.end(2.3, false).ended.unwrap();
         assert_eq!((finding.from_s, finding.raised_s), (1.0, 1.5));
         assert_eq!(finding.value_pct, 99.0);
-        // A level that was reached for a shorter time than that of the finding, and values before it, do not count.
+        // A level that was reached before the finding, but too briefly to be raised, does not count, and neither do the
+        // values at that time.
         let (_, findings, _) = run(&[
             (0.3, 100.0, 0.0),
             (1.0, 0.0, 0.0),

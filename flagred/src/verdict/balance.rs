@@ -27,7 +27,8 @@ const ONE_MOTOR: f64 = 0.75;
 /// Shifts that differ by less than this count as equal.
 const EQUAL_TOLERANCE: f64 = 0.02;
 
-/// If the spread between the motors exceeds that of the last seconds by at least this, the motors do not slow down together.
+/// If the spread between the motors exceeds the spread during the last seconds by at least this, the motors do not slow
+/// down together.
 const MAX_SPREAD_INCREASE: f64 = 0.05;
 
 /// The balance of one flight. The averages of each motor are in [`Motor`].
@@ -118,7 +119,7 @@ impl Balance {
     }
 }
 
-/// Whether the motors differ no more than in the last seconds. In a fall they differ more.
+/// Whether the motors differ from each other no more than they did in the last seconds. In a fall they differ more.
 pub(super) fn is_together(motors: &[Motor]) -> bool {
     let count = motors.len() as f64;
     let mean = motors.iter().map(|m| m.command).sum::<f64>() / count;

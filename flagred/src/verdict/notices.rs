@@ -25,7 +25,7 @@ pub(crate) struct Notices {
     watches: [NoticeState; 4],
 }
 
-/// The time since which a limit is exceeded, and the open finding.
+/// The time since which a limit has been exceeded, and the open finding.
 #[derive(Debug, Clone, Copy)]
 struct NoticeState {
     passed_since_s: Option<f64>,
@@ -99,12 +99,13 @@ impl Notices {
         self.watches[3].push(t_s, Level::Warn, limit, weak.map(Exceedance::of));
     }
 
-    /// Whether the motors work as before an alarm; true if that is not monitored.
+    /// Whether the motors work as they did before the alarm; true if that is not monitored.
     pub(crate) fn has_recovered(&self) -> bool {
         self.settings.imbalance.is_none() || self.balance.has_recovered()
     }
 
-    /// Whether the motors differ no more than in the last seconds; true if that is not monitored.
+    /// Whether the motors differ from each other no more than they did in the last seconds; true if that is not
+    /// monitored.
     pub(crate) fn is_together(&self, motors: &[Motor]) -> bool {
         self.settings.imbalance.is_none() || balance::is_together(motors)
     }

@@ -27,8 +27,9 @@ pub struct AcceptedFindings {
 }
 
 impl AcceptedFindings {
-    /// Removes the findings that the entries of `allow` accept from `findings`, and returns the entries with their numbers of
-    /// findings. Errors are never accepted. If several entries accept a finding, it counts for the first one.
+    /// Removes the findings that the entries of `allow` accept from `findings`. Returns the entries, each with the
+    /// number of findings that it accepts. Errors are never accepted. If several entries accept a finding, it counts
+    /// for the first of them.
     pub fn remove(
         allow: &[AllowedFinding],
         findings: &mut Vec<Diagnostic>,

@@ -36,7 +36,8 @@ pub(super) fn marks(shape: &MembershipFunction) -> Vec<f64> {
     }
 }
 
-/// Returns the values at which `is_true` changes between two of the given values, by bisection.
+/// Returns the values at which the result of `is_true` changes between two successive given values. They are found by
+/// bisection.
 pub(super) fn changes(values: &[f64], is_true: impl Fn(f64) -> bool) -> Vec<f64> {
     let mut found = Vec::new();
     let Some(&first) = values.first() else {

@@ -1,5 +1,5 @@
 //! Parts of a rule set that have no effect or no value: terms that are nearly constant, `clamp` for values that never
-//! leave the range, a term after `any`, formulas without a finite value.
+//! leave the range, a term that follows the hedge `any`, formulas without a finite value.
 
 use alloc::{format, string::String, vec::Vec};
 
@@ -280,8 +280,8 @@ fn has_a_value(model: &Model, formula: &Formula) -> bool {
     const POINTS: u32 = 500;
     let variables: Vec<&Variable> = model.variables().collect();
     (0..=POINTS).any(|point| {
-        // The points follow an additive recurrence. Its step differs between variables; that of the first one is 1 /
-        // golden ratio.
+        // The points follow an additive recurrence. Its step differs between variables; for the first variable it is
+        // 1 / golden ratio.
         let value = |name: &str| {
             let index = variables.iter().position(|variable| variable.name == name);
             let Some((index, variable)) = index.and_then(|i| Some((i, variables.get(i)?))) else {

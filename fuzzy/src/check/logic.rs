@@ -1,9 +1,10 @@
-//! Conditions as propositional formulas, which determine the boxes of the input space in which a rule reaches a degree.
+//! Conversion of conditions to propositional formulas, to find the boxes of the input space in which a rule
+//! reaches a degree.
 //!
-//! With minimum, maximum and `1 - x` as operators, the degree of a condition reaches a level exactly where a formula of
-//! literals is true. A literal is the statement "the degree of this term reaches this level"; it is true on some
-//! intervals of one input. Every input is cut at the ends of these intervals. Within a cell between the cuts no literal
-//! changes, so evaluating each cell once proves statements about all points.
+//! With minimum, maximum and `1 - x` as AND, OR and NOT, the degree of a condition reaches a level exactly where a
+//! formula of literals is true. A literal is the statement "the degree of this term reaches this level"; it is
+//! true on some intervals of one input. Every input is cut at the ends of these intervals. Within a cell between
+//! the cuts no literal changes, so evaluating each cell once proves statements about all points.
 //!
 //! Other operators are treated as minimum and maximum, and weights and activation methods are ignored: the analysis
 //! determines where a rule can fire, not how strongly.
@@ -48,7 +49,7 @@ impl Level {
     }
 }
 
-/// The sets of values that an analysis considers.
+/// The kinds of sets that an analysis considers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Extent {
     /// Intervals only. Single values are ignored, because they have no width.
@@ -81,13 +82,13 @@ pub(super) enum Formula {
     Or(Vec<Formula>),
 }
 
-/// The values at which literals change. They are cached because outputs share most literals.
+/// A cache of the values at which each literal changes. Outputs share most literals.
 pub(super) type Changes = BTreeMap<Key, Vec<f64>>;
 
 /// A box of the input space: for each input, the range `from..to` of its cells.
 pub(super) type Cells = Vec<(usize, usize)>;
 
-/// The content of a literal. Equal literals are stored once.
+/// The properties that identify a literal. Equal literals are stored once.
 #[derive(PartialEq, Eq, PartialOrd, Ord, Clone)]
 pub(super) struct Key {
     input: usize,
@@ -98,7 +99,7 @@ pub(super) struct Key {
 }
 
 impl Logic {
-    /// Builds a formula for each condition, which is true where the degree of the condition reaches the level.
+    /// Builds a formula for each condition. The formula is true where the degree of the condition reaches the level.
     pub(super) fn new<'m>(
         model: &'m Model,
         conditions: impl Iterator<Item = &'m Condition>,
@@ -115,7 +116,8 @@ impl Logic {
         let formulas = conditions.map(|c| reader.formula(c, level)).collect();
         let found = reader.found;
         let mut cuts: Vec<Vec<f64>> = Vec::with_capacity(model.inputs.len());
-        // If a literal is true at a single value, such as that of a singleton, this value gets its own cell.
+        // If a literal is true only at a single value, such as the position of a singleton, this value gets its own
+        // cell.
         let mut points: Vec<Vec<f64>> = vec![Vec::new(); model.inputs.len()];
         let values: Vec<Vec<f64>> = model.inputs.iter().map(axis::values).collect();
         for variable in &model.inputs {
@@ -170,7 +172,7 @@ impl Logic {
         }
     }
 
-    /// Returns the box of all cells of all inputs.
+    /// Returns the box that contains all cells, that is, the whole input space.
     pub(super) fn everywhere(&self) -> Cells {
         let cells = self
             .cuts
@@ -179,7 +181,8 @@ impl Logic {
         cells.collect()
     }
 
-    /// Returns whether a formula is true or false in all cells of a box; `None` if neither can be derived.
+    /// Returns `Some(true)` if a formula is true in all cells of a box, `Some(false)` if it is false in all cells, and
+    /// `None` if neither can be derived.
     pub(super) fn holds(&self, formula: &Formula, cells: &Cells) -> Option<bool> {
         match formula {
             Formula::Always => Some(true),
@@ -262,7 +265,7 @@ impl Logic {
     }
 }
 
-/// Splits a box at a cell of an input.
+/// Splits a box in two along an input, at the cell `cut`.
 pub(super) fn halves(cells: Cells, input: usize, cut: usize) -> [Cells; 2] {
     let (mut below, mut above) = (cells.clone(), cells);
     if let (Some(below), Some(above)) = (below.get_mut(input), above.get_mut(input)) {

@@ -84,7 +84,7 @@ impl Default for Options {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Report {
-    /// Boxes of the input space without a rule.
+    /// Boxes of the input space in which no rule reaches the coverage, or no rule fires at all.
     pub uncovered: Vec<UncoveredRegion>,
     /// Whether `uncovered` is complete. In large rule sets the search stops early. If NOT is applied to an interval
     /// type-2 term, there is no search, and `uncovered` is empty.
@@ -287,7 +287,7 @@ fn against_trend(stage: &Stage<'_>) -> Vec<AgainstTrend> {
 }
 
 /// Returns the uncovered boxes of all outputs: first those in which no rule fires at all, then those in which no rule
-/// reaches the coverage. Outputs with the same boxes are listed once.
+/// reaches the coverage.
 fn all_uncovered(stages: &[Stage<'_>], coverage: f64) -> (Vec<UncoveredRegion>, bool) {
     let mut found: Vec<UncoveredRegion> = Vec::new();
     let mut complete = true;
@@ -306,7 +306,8 @@ fn all_uncovered(stages: &[Stage<'_>], coverage: f64) -> (Vec<UncoveredRegion>, 
             let boxes = coverage::uncovered(model, name, level, &mut shared, known);
             complete &= boxes.complete;
             let new = boxes.found.into_iter().filter(|one| {
-                // A box in which no rule fires does not reach the coverage either; it is not listed a second time.
+                // If no rule fires in a box, no rule reaches the coverage there either. Such a box is not listed a
+                // second time.
                 one.silent
                     || !found
                         .iter()
@@ -338,8 +339,8 @@ fn known(model: &Model, claim: &Monotone) -> Result<(), alloc::boxed::Box<Diagno
 }
 
 impl Report {
-    /// Converts the report to diagnostics with positions. Findings that the author accepts are omitted; an accepted
-    /// finding that does not occur is reported itself, unless the analysis is incomplete.
+    /// Converts the report to diagnostics with positions. Findings that the author accepts are omitted. Each entry
+    /// of `allow` that accepts no finding is reported, unless the analysis is incomplete.
     #[must_use]
     pub fn findings(&self, model: &Model, spans: &Spans) -> Vec<Diagnostic> {
         let mut found = findings::of(self, model, spans);

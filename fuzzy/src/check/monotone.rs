@@ -107,7 +107,7 @@ impl fmt::Display for Counterexample {
 }
 
 impl Probe<'_> {
-    /// Returns the worst counterexample to a claim, for each output.
+    /// Returns, for each output that violates a claim, the worst counterexample.
     pub(super) fn counterexamples(&mut self, claim: &Monotone) -> Vec<Counterexample> {
         let Some(input) = self.model.inputs.iter().position(|v| v.name == claim.input) else {
             return Vec::new();
@@ -119,8 +119,9 @@ impl Probe<'_> {
         let outputs = self.model.outputs.len();
         let mut worst: Vec<Option<(f64, Counterexample)>> = alloc::vec![None; outputs];
         for line in self.lines(input) {
-            // For each output: the input and the value at the most extreme value so far on the line, which is the
-            // largest one for an increasing claim and the smallest one for a decreasing claim.
+            // For each output: the most extreme value so far on the line, preceded by the input at which it
+            // occurs. The most extreme value is the largest one for an increasing claim and the smallest one for
+            // a decreasing claim.
             let mut best: Vec<Option<(f64, f64)>> = alloc::vec![None; outputs];
             for (x, values) in &line.values {
                 for (output, value) in values.iter().enumerate() {

@@ -120,7 +120,7 @@ fn value_of_single_term(model: &Model, output: &Output, term: &Term) -> Option<f
     outcomes.first()?.value()
 }
 
-/// Returns a suggestion for changes after which the output reaches these terms.
+/// Returns a suggestion: changes to the output after which it reaches the peaks of these terms.
 pub(super) fn remedies(model: &Model, output: &Output, unreached: &[UnreachedTerm]) -> String {
     let Output {
         variable,
@@ -155,7 +155,7 @@ pub(super) fn remedies(model: &Model, output: &Output, unreached: &[UnreachedTer
         condition.visit(&mut |proposition| is_read |= proposition.variable.text == variable.name);
     }
     if is_read {
-        // Conditions can only read fuzzy sets, so terms that are numbers are not suggested.
+        // Conditions can only read fuzzy sets. Replacing the terms by numbers is therefore not suggested.
         let wider = wider.as_deref().unwrap_or("a wider `range`");
         return format!("the {method} of a term lies inside the term: write {wider}");
     }
@@ -178,7 +178,7 @@ pub(super) fn remedies(model: &Model, output: &Output, unreached: &[UnreachedTer
     )
 }
 
-/// Formats the terms of a variable with a number for each.
+/// Formats the terms of a variable, each with a number: `{off: 0, short: 10}`.
 fn listed(variable: &Variable, numbers: &[f64], write: impl Fn(f64) -> String) -> String {
     /// The maximum number of terms in a message.
     const MAX_TERMS: usize = 10;

@@ -40,13 +40,13 @@ pub(super) struct Probe<'m> {
     engine: &'m Engine,
     scratch: Scratch,
     outcomes: Vec<Outcome>,
-    /// The values of each input.
+    /// The values at which each input is evaluated.
     pub(super) values: Vec<Vec<f64>>,
     /// The maximum number of evaluations per analysis.
     pub(super) evaluations: usize,
     /// The number of rules and terms that each evaluation processes.
     work: u64,
-    /// The remaining work.
+    /// The work that the analyses may still do, in the unit of `MAX_STEPS_IN_ALL`.
     steps_left: u64,
     /// Whether all points that an analysis requested were evaluated.
     pub(super) is_complete: bool,
@@ -83,8 +83,8 @@ impl<'m> Probe<'m> {
         done
     }
 
-    /// Returns the values of the outputs at a point; `None` if no rule fires, or if the remaining work does not suffice
-    /// for an evaluation.
+    /// Returns the value of each output at a point. A value is `None` if no rule fires, or if the remaining work does
+    /// not suffice for an evaluation.
     pub(super) fn outputs(&mut self, point: &[f64]) -> impl Iterator<Item = Option<f64>> {
         let failed = !self.is_evaluated(point);
         self.outcomes
@@ -153,8 +153,8 @@ impl<'m> Probe<'m> {
         (0..most).map(|_| point()).collect()
     }
 
-    /// Returns lines parallel to the axis of an input, at several points of the other inputs, with the values of the
-    /// outputs along them.
+    /// Returns lines parallel to the axis of an input, with the values of the outputs along them. Each line has a
+    /// different combination of values of the other inputs.
     pub(super) fn lines(&mut self, input: usize) -> Vec<Line> {
         let along = self.values.get(input).cloned().unwrap_or_default();
         let count = (self.evaluations / (2 * along.len().max(1))).clamp(2, 400);
@@ -196,10 +196,10 @@ impl<'m> Probe<'m> {
 
 /// The outputs along one input, with the other inputs fixed.
 pub(super) struct Line {
-    /// The values of all inputs; the value of `input` is 0.
+    /// The values of the fixed inputs. The element of `input` has no meaning and is 0.
     pub(super) base: Vec<f64>,
     pub(super) input: usize,
-    /// The values of the input, in ascending order, with the values of all outputs.
+    /// The values of the input, in ascending order, each with the values of all outputs at that point.
     pub(super) values: Vec<(f64, Vec<Option<f64>>)>,
 }
 

@@ -17,11 +17,11 @@ pub struct Reach {
     pub output: String,
     /// The smallest value found.
     pub low: f64,
-    /// The inputs at which it was found.
+    /// The inputs at which `low` was found.
     pub low_at: Vec<Coordinate>,
     /// The largest value found.
     pub high: f64,
-    /// The inputs at which it was found.
+    /// The inputs at which `high` was found.
     pub high_at: Vec<Coordinate>,
     /// The range of the output.
     pub range: [f64; 2],

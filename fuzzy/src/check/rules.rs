@@ -89,8 +89,8 @@ impl PartIds {
         match condition {
             Condition::And(parts) => Parts::All(sorted(parts)),
             Condition::Or(parts) => Parts::Any(sorted(parts)),
-            // A single part could be either variant; it is a conjunction here, as most conditions
-            // are.
+            // A condition with a single part could be either variant. It is stored as a
+            // conjunction, because most conditions are conjunctions.
             one => Parts::All(sorted(core::slice::from_ref(one))),
         }
     }
@@ -247,7 +247,7 @@ pub(super) fn subsumed(model: &Model) -> Vec<SubsumedRule> {
 struct Member {
     index: usize,
     parts: Parts,
-    /// A bit for each part, so that one comparison excludes most pairs of sets.
+    /// A bit mask in which each part sets a bit, so that a single comparison excludes most pairs of rules.
     signature: u64,
     weight: f64,
 }

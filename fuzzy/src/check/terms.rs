@@ -62,7 +62,7 @@ pub(super) fn equal(variable: &Variable) -> Vec<EqualTerms> {
     let mut found = Vec::new();
     let terms = || variable.terms.iter().zip(&hashes);
     for (i, second) in terms().enumerate() {
-        // A term that is 0 everywhere is reported on its own.
+        // A term that is 0 everywhere is reported separately.
         if !zero_terms.contains(&i)
             && let Some((first, _)) = terms().take(i).find(|first| same(*first, second))
         {
@@ -134,7 +134,7 @@ pub(super) fn unreachable(model: &Model, never_firing: &[usize]) -> Vec<TermOf> 
         let terms = zero_terms(variable).into_iter();
         found.extend(terms.filter_map(|i| Some(term_of(variable, variable.terms.get(i)?))));
     }
-    // The rules that never fire are sorted.
+    // `never_firing` is in ascending order, as the binary search requires.
     let mut alive: BTreeSet<(&str, &str)> = BTreeSet::new();
     let mut dead: BTreeSet<(&str, &str)> = BTreeSet::new();
     for (i, rule) in model.rules.iter().enumerate() {

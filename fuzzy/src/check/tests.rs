@@ -413,7 +413,7 @@ fn an_output_that_is_read_counts_as_an_input_over_its_range() {
     let side = &one.sides[0];
     assert_eq!((one.output.as_str(), side.input.as_str()), ("z", "mid"));
     assert_eq!((side.low, side.high, one.sides.len()), (0.4, 0.6, 1));
-    // A claim refers to an input of the whole model, across the chain.
+    // The claim is about an input of the whole model, although the output belongs to a later stage.
     let wrong: Vec<_> = report
         .counterexamples
         .iter()
@@ -566,7 +566,8 @@ fn a_sugeno_output_beyond_its_range_is_found() {
 
 #[test]
 fn a_gap_is_reported_once() {
-    // No term covers 3 to 5. The regions there in which no rule fires, or only weakly, are not reported in addition.
+    // No term covers 3 to 5. The regions there in which no rule fires, or rules fire only weakly, are not reported in
+    // addition.
     let said = findings_of(
         "fuzzy: 1\nname: a\ninputs: {x: {range: [0, 8], terms: {low: {left_shoulder: [1, 3]}, \
          high: {right_shoulder: [5, 7]}}}}\n\
@@ -625,7 +626,8 @@ fn reach_of(output: &str) -> Vec<String> {
 fn an_outer_term_that_is_never_reached_is_a_warning_with_both_remedies() {
     let reported = reach_of("{range: [0, 40], partition: [off, short, medium, long]}");
     insta::assert_snapshot!(reported.join("\n"));
-    // Each suggestion removes the finding when it is applied.
+    // A missing rule is reported once. The unused term and the region in which no rule fires are not reported in
+    // addition.
     for remedy in [
         "{range: [-7.69, 47.69], partition: {off: 0, short: 13.3333, medium: 26.6667, long: 40}}",
         "{range: [0, 40], terms: {off: {constant: 0}, short: {constant: 13.3333}, medium: {constant: 26.6667}, long: {constant: 40}}, \
@@ -645,9 +647,9 @@ fn each_cause_of_an_unreached_outer_term_has_its_own_message() {
         "{range: [0, 40], terms: {off: {gaussian: {mean: 0, sd: 4}}, short: {gaussian: {mean: 10, sd: 4}}, medium: {gaussian: {mean: 25, sd: 4}}, long: {gaussian: {mean: 40, sd: 4}}}, defuzzifier: bisector}",
         // The terms are inside the range, and its ends are never reached: only a note.
         "{range: [0, 40], terms: {off: {triangle: [0, 5, 10]}, short: {triangle: [10, 15, 20]}, medium: {triangle: [20, 25, 30]}, long: {triangle: [30, 35, 40]}}}",
-        // Terms that are constants have a separate message.
+        // The terms are inside the range, so the output never reaches the ends of the range. This is only a note.
         "{range: [0, 40], terms: {off: {constant: 0}, short: {constant: 10}, medium: {constant: 20}, long: {constant: 30}}, defuzzifier: weighted_average}",
-        // No finding: a plateau, the maxima, singletons.
+        // These cases have no finding: a plateau, the mean of maxima, singletons.
         "{range: [0, 40], partition: {off: 6, short: 12, medium: 24, long: 34}}",
         "{range: [0, 40], partition: [off, short, medium, long], defuzzifier: mean_of_maxima}",
         "{range: [0, 40], terms: {off: {singleton: 0}, short: {singleton: 10}, medium: {singleton: 20}, long: {singleton: 40}}}",

@@ -69,7 +69,7 @@ struct Table {
 struct Row {
     rule: usize,
     term: String,
-    /// The middle of the term.
+    /// The middle of the term that the rule concludes.
     middle: f64,
 }
 
@@ -151,8 +151,8 @@ impl Table {
     }
 }
 
-/// Pairs of neighbouring rules along an input, each with the lower term first: those that raise the output and those
-/// that lower it.
+/// Pairs of neighbouring rules along an input: those that raise the output and those that lower it. Each pair starts
+/// with the rule at the lower term.
 #[derive(Default)]
 struct Steps<'t> {
     rising: Vec<(&'t Row, &'t Row)>,

@@ -109,8 +109,8 @@ pub(super) fn levels(implication: Implication, strength: f64) -> [Option<f64>; 2
     }
 }
 
-/// Returns an implication without steps that gives the same degrees between two levels, where the activated term is
-/// not constant.
+/// Returns an implication without steps. Between two levels, it gives the same degrees as `implication` wherever
+/// the activated term is not constant.
 pub(super) fn between_levels(implication: Implication) -> Implication {
     match implication {
         Implication::Drastic | Implication::NilpotentMinimum => Implication::Minimum,
@@ -171,7 +171,7 @@ pub(super) struct Smooth {
     pub(super) aggregation: Aggregation,
     /// Whether the aggregated degree jumps to 1 at some positions.
     pub(super) has_steps: bool,
-    /// Whether the aggregated set of straight terms is straight.
+    /// Whether an aggregation of straight terms is straight between the kinks and steps.
     pub(super) keeps_lines: bool,
 }
 

@@ -1,6 +1,6 @@
 //! The integrator, which supports any terms and operators. The aggregated set is split where membership functions are
-//! not smooth or have an extremum, where they meet plateaus, and where they cross. Between these cuts, straight pieces
-//! are integrated by a formula and curved pieces by Gauss-Legendre quadrature.
+//! not smooth or have an extremum, where they reach the level of a plateau, and where they cross. Between these cuts,
+//! straight pieces are integrated by a formula and curved pieces by Gauss-Legendre quadrature.
 
 use alloc::vec::Vec;
 
@@ -106,7 +106,7 @@ impl Curves {
         }
     }
 
-    /// Returns the maximum number of cuts that an evaluation adds between two cuts, in addition to a fixed number per
+    /// Returns the maximum number of cuts that an evaluation adds between two cuts, not counting a fixed number per
     /// firing strength.
     pub(crate) fn workspace(&self) -> usize {
         let crossing = self.terms.len().min(MAX_CROSSING);
@@ -180,7 +180,8 @@ impl Curves {
         } = workspace;
         let smooth = Smooth::of(operators.aggregation);
         let has_steps = all_known && smooth.has_steps;
-        // An operator with a step stays on one side of the step on the whole piece.
+        // No piece extends across a step of the aggregation, so the aggregation without steps gives the same degrees.
+        // Pieces whose degree is 1 because of a step are visited separately.
         let aggregation = match has_steps {
             true => smooth.aggregation,
             false => operators.aggregation,
@@ -384,8 +385,8 @@ impl Curves {
         self.terms.get(term).map_or(0.0, |term| term.membership(x))
     }
 
-    /// Returns whether the minimum with `strength` cuts a term off. It does not if `strength` equals the maximum
-    /// degree of the term up to rounding.
+    /// Returns whether the minimum with `strength` cuts a term off. A strength that equals the maximum degree of
+    /// the term up to rounding does not cut it off.
     fn cuts_off(&self, term: usize, strength: f64) -> bool {
         let highest = self.highest.get(term);
         self.has_formula || highest.is_none_or(|highest| strength < highest * (1.0 - EQUAL))

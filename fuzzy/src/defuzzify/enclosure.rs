@@ -46,7 +46,7 @@ enum Method {
     },
     Bisector(Set),
     Maxima(Set),
-    /// Anything between the first and the last value with a degree above 0.
+    /// The interval from the first to the last value with a degree above 0.
     Support(Reduction),
     Tsukamoto(Vec<Term>),
 }
@@ -60,7 +60,7 @@ pub(crate) struct ValueEnclosure {
 }
 
 impl EnclosureMethod {
-    /// Creates the enclosure of an output of a valid model.
+    /// Creates the method for an output of a valid model.
     pub(crate) fn new(output: &Output, operators: ConsequentOperators) -> Self {
         let reduction = Reduction::new(output, operators);
         let method = match (output.defuzzifier, reduction) {
@@ -87,7 +87,7 @@ impl EnclosureMethod {
         }
     }
 
-    /// Returns the maximum number of cuts of an evaluation, in addition to a fixed number per firing strength.
+    /// Returns the maximum number of cuts of an evaluation, not counting a fixed number per firing strength.
     pub(crate) fn cuts(&self) -> usize {
         match &self.method {
             Method::Reduced(reduction) | Method::Support(reduction) => reduction.cuts(),

@@ -52,7 +52,7 @@ impl IntegratedSet {
         }
     }
 
-    /// Returns the maximum number of cuts of an evaluation, in addition to a fixed number per firing strength.
+    /// Returns the maximum number of cuts of an evaluation, not counting a fixed number per firing strength.
     pub(crate) fn cuts(&self) -> usize {
         match &self.set {
             Set::Pieces(curves) => curves.workspace(),
@@ -60,7 +60,7 @@ impl IntegratedSet {
         }
     }
 
-    /// Returns the value; `None` if no rule fired. It is not inlined, to keep the code of closed forms small.
+    /// Returns the value; `None` if no rule fired. The function is not inlined, to keep the code of closed forms small.
     #[inline(never)]
     pub(crate) fn value(&self, strengths: Strengths<'_>, workspace: &mut Workspace) -> Option<f64> {
         let value = match &self.set {

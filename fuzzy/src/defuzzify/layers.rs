@@ -102,7 +102,7 @@ fn parts(prepared: &PreparedSet) -> Option<Vec<LayerSegment>> {
 }
 
 impl LayerSegment {
-    /// Writes the numbers of this part as layer `index` of `four`; `None` if they would overflow.
+    /// Writes the numbers of this part as layer `index` of a group of four layers; `None` if they would overflow.
     fn write(&self, (origin, unit): (f64, f64), index: usize, four: &mut Layers) -> Option<()> {
         let ((from, left), (to, right)) = (self.from, self.to);
         let length = to - from;

@@ -114,7 +114,8 @@ impl Maxima {
         self.values.point(x);
     }
 
-    /// Returns the selected value; `None` for a set that is 0 everywhere.
+    /// Returns the smallest, mean or largest value at which the set is highest, as selected by `which`; `None` for a
+    /// set that is 0 everywhere.
     pub(crate) fn value(mut self, which: OfMaxima) -> Option<f64> {
         self.close(false);
         self.values.value(which)
@@ -157,7 +158,7 @@ pub(super) fn turns(slope: &dyn Fn(f64) -> f64, visit: &mut dyn FnMut(f64)) -> (
 }
 
 /// Returns the positions at which a shape is not smooth or has an extremum, and the ends of the range. Between these
-/// positions it only rises, only falls or is level. The positions of a formula are unknown.
+/// positions the shape only rises, only falls or is level. The positions of a formula are unknown.
 pub(super) fn monotone(shape: &MembershipFunction, low: f64, high: f64) -> Vec<f64> {
     let mut cuts = shape.cuts();
     let sort = |cuts: &mut Vec<f64>| {

@@ -1,21 +1,24 @@
 //! Computing a number from firing strengths: the coefficients of the closed forms, and the integrator for sets without
 //! a closed form.
 //!
-//! [`engine::strategy`](crate::engine) chooses between them. The data that each of them stores is shown here for an
-//! output with three triangles, `low` (0, 0, 5), `medium` (0, 5, 10) and `high` (5, 10, 10), over 0 to 10:
+//! [`engine::strategy`](crate::engine) chooses one of these methods for each output. The following list shows the
+//! data that each method stores for an output with three triangles, `low` (0, 0, 5), `medium` (0, 5, 10) and
+//! `high` (5, 10, 10), over 0 to 10:
 //!
-//! - [`Partition`]: the terms sum to 1, so each is one [`Pair`](crate::table::Pair) entry. `low` cut at `h` has the
-//!   area `5 h - 2.5 h^2`; its overlap with `medium` is 5 wide around 2.5.
+//! - [`Partition`]: the terms sum to 1, so each term is stored as one half of a [`Pair`](crate::table::Pair).
+//!   If `low` is cut at `h`, it has the area `5 h - 2.5 h^2`. Its overlap with `medium` is 5 wide, and the
+//!   middle of the overlap is at 2.5.
 //! - [`Moments`](Method::Moments): the area and moment of each term about the middle, 5. `low` has the area 2.5 and,
 //!   with its centroid at 5/3, the moment `2.5 (5/3 - 5) = -8.33`.
 //! - [`PreparedSet`]: each term is split into flanks, which only rise or only fall: one for `low`, two for `medium`, one
 //!   for `high`. The range is split where two flanks cross, at 2.5 and 7.5, and where they end, at 5. On each of the
 //!   four sections, one of the two flanks is always the higher one.
-//! - [`PreparedLayers`]: on each section, the area between the strengths of the terms that are higher there and a term's
-//!   own strength.
+//! - [`PreparedLayers`]: for each term on each section, the area of a layer. The layer lies between the largest
+//!   firing strength of the terms that are higher there, and the firing strength of the term itself.
 //! - [`IntegratedSet`]: only the terms and their corners, 0, 5 and 10. The aggregated set is split into pieces in each
 //!   evaluation.
-//! - [`Reduction`]: the same for the lower and the upper membership functions of an interval type-2 output.
+//! - [`Reduction`]: the same data as for `IntegratedSet`, for the lower and for the upper membership functions
+//!   of an interval type-2 output.
 
 use alloc::vec::Vec;
 
@@ -73,7 +76,7 @@ impl<'a> Strengths<'a> {
 /// The method that computes the value of an output, with all data that does not depend on the inputs.
 #[derive(Debug, Clone)]
 pub(crate) enum Method {
-    /// The centroid of a set whose terms are a partition and aggregated by maximum.
+    /// The centroid of a set whose terms form a partition and are aggregated by maximum.
     Partition(Partition),
     /// The centroid of a set of straight terms that are cut, and aggregated by maximum.
     Layered(PreparedLayers),

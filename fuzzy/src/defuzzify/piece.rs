@@ -41,9 +41,9 @@ pub(crate) struct Integrals {
     unit: f64,
 }
 
-/// Returns the unit of length for areas over a range with the given width. The area times the arm of a moment is
-/// proportional to the square of the width, which overflows or underflows for extreme ranges. For these, the unit is a
-/// power of two, so that it does not change digits; for all other ranges it is 1.
+/// Returns the unit of length for areas over a range with the given width. A moment, which is an area times a
+/// distance, is proportional to the square of the width. For extreme ranges this square overflows or underflows. For
+/// these, the unit is a power of two, so that it does not change digits; for all other ranges it is 1.
 pub(crate) fn unit(width: f64) -> f64 {
     if (1e-100..1e100).contains(&width) {
         return 1.0;
@@ -136,7 +136,8 @@ impl Piece<'_> {
         (self.to - self.from) * mean
     }
 
-    /// Returns the value up to which the area of the piece is `area`, which must not exceed that of the whole piece.
+    /// Returns the position up to which the area of the piece is `area`. This must not exceed the area of the whole
+    /// piece.
     pub(crate) fn position_of_area(&self, area: f64) -> f64 {
         let width = self.to - self.from;
         if let Some(curve) = self.curve {
@@ -159,17 +160,17 @@ impl Piece<'_> {
 
 /// The maximum number of successive halvings of an interval.
 const DEEPEST: usize = 48;
-/// The maximum total number of halvings of a piece. This suffices to locate several missed kinks; the limit ends the
-/// search if rounding prevents agreement of the halves.
+/// The maximum total number of splits of a piece. This suffices to locate several missed kinks. The limit ends the
+/// search if the parts never agree with the whole because of rounding.
 const MAX_HALVINGS: usize = 400;
 
-/// The relative difference up to which an interval and its halves agree. The result is then accurate to rounding where
-/// the curve is smooth, and to this difference at a missed kink.
+/// The relative difference up to which the integral over an interval agrees with the sum of the integrals over its two
+/// parts. The result is then accurate to rounding where the curve is smooth, and to this difference at a missed kink.
 const AGREEMENT: f64 = 1e-13;
 
-/// Returns `(integral of f(t) dt, integral of t f(t) dt)` from 0 to `end`, by Gauss-Legendre quadrature on intervals
-/// that are halved until they agree. `known` is the area of the rest of the set, relative to which the error is
-/// measured.
+/// Returns `(integral of f(t) dt, integral of t f(t) dt)` from 0 to `end`, by Gauss-Legendre quadrature. An interval
+/// is split in two until its integral agrees with the sum over its parts. `known` is the area of the rest of the
+/// set, relative to which the error is measured.
 fn integrate(curve: &dyn Fn(f64) -> f64, end: f64, known: f64) -> (f64, f64) {
     let mut stack = [(0.0, 0.0, 0.0, 0.0); DEEPEST + 1];
     let (whole, moment) = gauss(curve, 0.0, end, 0.0);
@@ -179,8 +180,8 @@ fn integrate(curve: &dyn Fn(f64) -> f64, end: f64, known: f64) -> (f64, f64) {
     while open > 0 {
         open -= 1;
         let (a, b, area, moment) = stack[open];
-        // The interval is not split at the middle, where the error of a symmetric kink would
-        // cancel.
+        // Splitting at the middle is avoided, because the error of a symmetric kink would cancel
+        // there.
         let middle = a + 0.43 * (b - a);
         let left = gauss(curve, a, middle, 0.0);
         let right = gauss(curve, middle, b, 0.0);
@@ -257,7 +258,8 @@ mod tests {
 
     #[test]
     fn integration_of_noise_terminates() {
-        // A function that never agrees with its halves, however often it is halved.
+        // A function for which the parts of an interval never agree with the whole, however often the interval is
+        // split.
         let noise = |t: f64| ((t * 1e15) as u64 % 1000) as f64 / 1000.0;
         let counter = core::cell::Cell::new(0usize);
         let counted = |t: f64| {

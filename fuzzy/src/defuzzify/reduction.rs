@@ -10,12 +10,12 @@
 //!
 //! F is convex and never decreases, since its derivative is the area of the upper set left of c plus the area of
 //! the lower set right of c. Between the kinks of straight sets it is a cubic. Newton's method with the exact
-//! integrals of the pieces therefore approaches the root from one side, without samples, and ends at the last
-//! digit. The right end is its mirror image. The search is in `table/reduction.rs`, together with the same
-//! search for weighted numbers.
+//! integrals of the pieces therefore approaches the root from one side, without samples, and converges to the last
+//! digit. The right end is the mirror image of the left end. The search is in `table/reduction.rs`, together with
+//! the same search for weighted numbers.
 //!
-//! If the lower set is empty, the centroid of a narrow set anywhere inside the upper one is possible: the
-//! interval is the support of the upper set.
+//! If the lower set is empty, a narrow set anywhere inside the upper set is possible, so the interval is the
+//! support of the upper set.
 
 use alloc::{boxed::Box, vec::Vec};
 
@@ -100,7 +100,7 @@ impl Reduction {
         Some(Reduction::Set(Box::new(set)))
     }
 
-    /// Returns the maximum number of cuts of an evaluation, in addition to a fixed number per firing strength.
+    /// Returns the maximum number of cuts of an evaluation, not counting a fixed number per firing strength.
     pub(crate) fn cuts(&self) -> usize {
         match self {
             Reduction::Set(set) => set.lower.workspace().max(set.upper.workspace()),
@@ -186,7 +186,7 @@ impl Set {
         upper: Strengths<'_>,
         workspace: &mut Workspace,
     ) -> Option<(f64, f64)> {
-        // The pieces do not depend on the position of the search. Straight ones are computed once.
+        // The pieces are the same in every step of the search, so straight pieces are computed only once.
         let mut lines = core::mem::take(&mut workspace.lines);
         lines.clear();
         let (mut of_upper, mut are_kept) = (0, true);

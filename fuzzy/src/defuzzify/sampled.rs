@@ -1,4 +1,4 @@
-//! Sampled defuzzification, which reproduces other programs including their errors.
+//! Sampled defuzzification, which reproduces the results of other programs, including their errors.
 
 use crate::model::{Sampling, SamplingRule};
 use crate::table::{OfMaxima, SetDefuzzifier};

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use crate::model::{MembershipFunction, Term};
 use crate::table::{Coefficient, Consequent, Point};
 
-/// The consequents of the terms of an output. Their ranges refer to the coefficients and the code stored here.
+/// The consequents of the terms of an output. Their index ranges refer to the coefficients and the code in this struct.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Consequents {
     pub(crate) consequents: Vec<Consequent>,

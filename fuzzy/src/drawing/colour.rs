@@ -103,7 +103,8 @@ const OKABE_ITO: [Colour; 7] = [
     Colour(0xcc, 0x79, 0xa7),
 ];
 
-/// Returns a colour for the i-th of several unordered items; after seven, lighter colours follow.
+/// Returns a colour for the i-th of several unordered items. After seven colours, the same colours follow in lighter
+/// shades.
 pub fn distinct(i: usize) -> Colour {
     let lighter = (i / OKABE_ITO.len() % 4) as f64 * 0.22;
     OKABE_ITO[i % OKABE_ITO.len()].mix(Colour::WHITE, lighter)

@@ -149,7 +149,7 @@ pub fn explanation_svg(model: &Model, explanation: &Explanation) -> String {
     document.finish(&format!("{}: an evaluation with its reasons", model.name))
 }
 
-/// Returns the value of an output, with the values of the outputs that it reads.
+/// Returns a text with the value of an output, and the values of the outputs that it reads.
 fn titles(output: &ExplainedOutput, variable: &Variable, all: &Explanation) -> String {
     let answer = answer(output, variable, all);
     match read_values(output, all) {

@@ -68,7 +68,7 @@ pub(super) fn axes(document: &mut SvgDocument, slice: &Slice, y: Scale, y_title:
     );
 }
 
-/// Fills the frame cell by cell, and hatches the cells that were filled.
+/// Paints the frame cell by cell, and hatches the cells whose values were filled by interpolation.
 pub(super) fn cells(
     document: &mut SvgDocument,
     slice: &Slice,
@@ -127,7 +127,8 @@ pub(super) fn cells(
     }
 }
 
-/// Calls `draw` with the column, row, length and look of each run of equal cells in a row.
+/// Calls `draw` for each run of cells with an equal look in a row. The arguments are the first column, the row, the
+/// length and the look of the run.
 pub fn runs<L: PartialEq + Copy>(
     columns: usize,
     rows: usize,
@@ -170,7 +171,7 @@ fn contours(document: &mut SvgDocument, slice: &Slice) {
     }
 }
 
-/// Draws the output over one input; filled sections are dashed.
+/// Draws the output over one input; sections whose values were filled by interpolation are dashed.
 pub(super) fn curve(document: &mut SvgDocument, frame: &Frame, slice: &Slice) {
     const DRAWN: &str = r##"fill="none" stroke="#2a788e" stroke-width="2.5""##;
     const DASHED: &str =

@@ -171,8 +171,8 @@ pub fn values_text(slice: &Slice, most: usize) -> String {
 /// Returns the number of decimals: 2 for a range from 0 to 100, 4 for a range from 0 to 1.
 fn decimals(width: f64) -> usize {
     /// The maximum number of decimals that fit the columns.
-    const MOST: f64 = 5.0;
-    (4.0 - libm::floor(libm::log10(width))).clamp(0.0, MOST) as usize
+    const MAX_DECIMALS: f64 = 5.0;
+    (4.0 - libm::floor(libm::log10(width))).clamp(0.0, MAX_DECIMALS) as usize
 }
 
 fn heading(slice: &Slice, more: &str) -> String {

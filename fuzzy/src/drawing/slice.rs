@@ -54,7 +54,7 @@ pub struct Slice {
     pub fixed: Vec<(String, f64)>,
     /// The method by which cells without a rule were filled; `None` if they were not.
     pub filling: Option<String>,
-    /// The cells: for each point of `x`, one per point of `y`.
+    /// The cells: for each point of `x`, one cell per point of `y`.
     pub cells: Vec<Cell>,
 }
 

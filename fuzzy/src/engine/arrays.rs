@@ -14,7 +14,8 @@ use crate::table::{
     arrays_from_fields,
 };
 
-/// The maximum number of terms for which a batch evaluates every formula; with more terms it looks up those above 0.
+/// The maximum number of literals for which a batch evaluates every formula. If there are more, the batch looks up the
+/// literals above 0.
 const MAX_FORMULAS: u32 = 32;
 
 macro_rules! define {
@@ -89,7 +90,7 @@ impl OwnedTable {
         }
         let alive = literals.iter().map(Literals::most_alive).max().unwrap_or(0);
         table.sizes.alive = alive as u32 + 2;
-        // A uniform table stores the lines of its axes itself, so it needs none here.
+        // A uniform table stores the lines of its axes itself, so its inputs need no lines.
         let reads_literals = table.sizes.degrees > 0 || table.conjunctions == Conjunctions::Dense;
         for (range, literals) in inputs.iter().zip(literals) {
             if reads_literals {

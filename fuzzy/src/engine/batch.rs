@@ -52,7 +52,8 @@ impl Engine {
         Ok(outcomes)
     }
 
-    /// Works like [`Engine::evaluate_batch`], into `outcomes`, which has one element per row and output.
+    /// Works like [`Engine::evaluate_batch`], but writes the outcomes to `outcomes`, which has one element per row and
+    /// output.
     ///
     /// # Errors
     /// Fails like [`Engine::evaluate_batch`], and if the number of outcomes is wrong.
@@ -97,8 +98,8 @@ impl Engine {
         Ok(())
     }
 
-    /// Evaluates only the values, into one column per output; a row without a value gets NaN. Each value is bitwise
-    /// equal to [`Outcome::value`] of [`Engine::evaluate`].
+    /// Evaluates the rows, and writes only the values of the outputs, into one column per output. A row without a
+    /// value gets NaN. Each value is bitwise equal to [`Outcome::value`] of [`Engine::evaluate`].
     ///
     /// # Errors
     /// Fails like [`Engine::evaluate_batch`], and if `values` does not have one column per output, or its columns differ
@@ -296,7 +297,7 @@ struct RowsScratch {
     of_row: Vec<f64>,
 }
 
-/// Returns the values of the rows of a block in a column. Missing rows are filled with the value of the first one.
+/// Returns the values of one column in the rows of a block. Missing rows are filled with the value of the first row.
 #[inline(always)]
 fn rows_in(column: &[f64]) -> [f64; ROWS] {
     <[f64; ROWS]>::try_from(column)
@@ -314,7 +315,7 @@ impl Stage {
     ) {
         match &self.batch {
             Some(arrays) => self.dispatch::<false>(arrays, memory, columns, rows, results),
-            // Uniform tables have their own instance, because they gain most from wide vectors.
+            // Uniform tables have their own compiled copy of the function, because they gain most from wide vectors.
             None if cfg!(feature = "simd") && table::has_cells_alone(&self.arrays) => {
                 self.dispatch::<true>(&self.arrays, memory, columns, rows, results);
             }
@@ -322,8 +323,8 @@ impl Stage {
         }
     }
 
-    /// Runs the evaluation compiled for the widest vectors of the processor. The operations, and hence the bits of the
-    /// results, stay the same.
+    /// Runs the copy of the evaluation that was compiled for the widest vectors of the processor. All copies perform
+    /// the same operations, so their results are bitwise equal.
     fn dispatch<const CELLS: bool>(
         &self,
         arrays: &OwnedTable,

@@ -226,7 +226,7 @@ rules: [IF x IS any THEN y IS same]
     assert_eq!((at_7(""), at_7(", clamp: true")), (Some(7.0), Some(5.0)));
 }
 
-/// A method selects among all rules of its block, including those of an output in another stage.
+/// An activation method selects among all rules of its block, including the rules of an output in another stage.
 #[test]
 fn a_method_sees_all_rules_of_its_block() {
     let text = "inputs: {x: {range: [0, 1], partition: [a, b]}}

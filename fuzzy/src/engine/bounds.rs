@@ -1,11 +1,12 @@
-//! Stages with interval type-2 terms: one compiled stage has both bounds of the firing strengths, and a type
+//! Stages with interval type-2 terms: one compiled stage computes both bounds of the firing strengths, and a type
 //! reduction computes the interval of each output.
 //!
 //! AND, OR, the hedges and weights never decrease when a degree increases, and NOT reverses the order. So the
-//! upper bound of a firing strength is an ordinary firing strength of upper degrees, in which terms below an odd
-//! number of NOTs have their lower degrees; for the lower bound, upper and lower degrees are exchanged. A model
-//! with type-2 terms is therefore converted to an ordinary model, in which each output that is an interval has a
-//! second output, with the lower bounds. The second outputs follow all other outputs and have no outcomes.
+//! upper bound of a firing strength is computed like an ordinary firing strength, from the upper degrees of most
+//! terms and the lower degrees of the terms below an odd number of NOTs. For the lower bound, upper and lower
+//! degrees are exchanged. A model with type-2 terms is therefore converted to an ordinary model, in which each
+//! output that is an interval has a second output, with the lower bounds. The second outputs follow all other
+//! outputs and have no outcomes.
 //!
 //! The table computes the intervals of weighted outputs and the values of fuzzy sets with a closed form, so that
 //! they can be exported. All other intervals of fuzzy sets are computed here.
@@ -235,7 +236,7 @@ fn rename(
 }
 
 impl Bounds {
-    /// Returns the maximum number of cuts of an evaluation, in addition to a fixed number per firing strength.
+    /// Returns the maximum number of cuts of an evaluation, not counting a fixed number per firing strength.
     pub(super) fn cuts(&self) -> usize {
         let cuts = self.reductions.iter().map(|one| one.reduction.cuts());
         cuts.max().unwrap_or(0)

@@ -29,8 +29,8 @@ pub(super) struct LaterStage {
 /// The indices, in the model, of the outputs and rules of a stage.
 #[derive(Debug, Clone)]
 struct OwnedStageIndices {
-    /// The index in the model of each output that the stage reads. The values of these outputs follow those of the
-    /// inputs.
+    /// The index in the model of each output that the stage reads. The values of these outputs are stored after
+    /// the values of the inputs.
     reads: Vec<u32>,
     /// The index in the model of each output of the stage.
     outputs: Vec<u32>,
@@ -153,8 +153,8 @@ impl Engine {
     }
 
     /// Returns the compiled arrays of a model in which an output [reads](crate::Model::reads) another one, to evaluate
-    /// them without this engine or to write them to a file. `None` for any other model, which is a
-    /// [`table`](Engine::table).
+    /// them without this engine or to write them to a file. `None` for any other model, whose arrays are returned by
+    /// [`Engine::table`].
     pub fn chain(&self) -> Option<table::Chain<'_>> {
         let chain = self.chain.as_deref()?;
         Some(table::Chain {

@@ -86,7 +86,8 @@ pub struct ExplainedOutput {
     /// The lower end of the interval whose middle is the value, if interval type-2 terms determine it; otherwise absent.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub low: Option<f64>,
-    /// The upper end of that interval.
+    /// The upper end of the interval whose middle is the value, if interval type-2 terms determine it; otherwise
+    /// absent.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub high: Option<f64>,
     /// Whether no rule fires and the value is the default of the output.
@@ -103,8 +104,8 @@ pub struct ExplainedOutput {
     pub rules: Vec<Share>,
     /// The degree of the value in each term; empty for Takagi-Sugeno outputs.
     pub terms: Vec<Degree>,
-    /// The aggregated set; with interval type-2 terms, the upper one. It is a list of `(value, degree)` at evenly spaced
-    /// values over the range, or at the singletons. Empty for Takagi-Sugeno and Tsukamoto outputs.
+    /// The aggregated set; with interval type-2 terms, the upper aggregated set. It is a list of `(value, degree)` at
+    /// evenly spaced values over the range, or at the singletons. Empty for Takagi-Sugeno and Tsukamoto outputs.
     pub set: Vec<(f64, f64)>,
 }
 
@@ -128,9 +129,10 @@ pub struct Share {
     /// The lower bound of the firing strength, if the condition reads an interval type-2 term; otherwise absent.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub lower: Option<f64>,
-    /// The share of the result, in [0, 1]. With maximum as aggregation, it is the fraction of the aggregated set's area
-    /// in which this rule is the highest; with sums, the rule's fraction of the area of all sets; in a Takagi-Sugeno or
-    /// Tsukamoto output, its fraction of the weights. With interval type-2 terms, upper bounds determine it.
+    /// The rule's share of the result, in [0, 1]. With maximum as aggregation, it is the fraction of the aggregated
+    /// set's area in which this rule is the highest; with sums, the rule's fraction of the area of all sets; in a
+    /// Takagi-Sugeno or Tsukamoto output, its fraction of the weights. With interval type-2 terms, the share is
+    /// computed from upper bounds.
     pub share: f64,
     /// The number that the consequent yields at these inputs; only for Takagi-Sugeno and Tsukamoto outputs and for
     /// singletons.

@@ -122,7 +122,7 @@ struct CompiledOutput {
     low: f64,
     high: f64,
     when_no_rule_fires: NoRuleFires,
-    /// The range of the output's firing strengths.
+    /// The index range of the output's firing strengths.
     strengths: Range<usize>,
     /// The offset of each term's firing strengths within `strengths`, followed by the end of the last term's firing
     /// strengths.
@@ -290,7 +290,8 @@ impl Engine {
         Ok(outcomes)
     }
 
-    /// Works like [`Engine::evaluate`], without allocation: `outcomes` has one element per output.
+    /// Works like [`Engine::evaluate`], but does not allocate: the outcomes are written to `outcomes`, which has one
+    /// element per output.
     ///
     /// # Errors
     /// Fails like [`Engine::evaluate`], and if the length of `outcomes` differs from the number of outputs.

@@ -36,9 +36,9 @@ pub struct AntecedentProposition {
 
 impl Engine {
     /// Returns the rule that raises an output most, as [`Table::raised_by`](table::Table::raised_by) defines it. The
-    /// result is an index in evaluation order, as [`AntecedentProposition::evaluation_index`]. `None` if no rule fires,
-    /// a value is not finite, there is no such output, or the model has
-    /// [type-2 terms](crate::Model::has_type2_terms).
+    /// result is an index in evaluation order, like [`AntecedentProposition::evaluation_index`]. `None` if no rule
+    /// fires, a value is not finite, there is no such output, or the model has [type-2
+    /// terms](crate::Model::has_type2_terms).
     ///
     /// # Example: the rule that makes the fan fast
     /// ```
@@ -220,8 +220,8 @@ fn rule_of(
     }
 }
 
-/// Returns the term of a proposition about a variable, with its hedges. For `any` without a term, it is a term over the
-/// whole range.
+/// Returns the term of a proposition about a variable, with its hedges. For `any` without a term, returns a rectangle
+/// over the whole range.
 fn literal(variable: &Variable, proposition: &Proposition) -> Option<Literal> {
     let term = match &proposition.term {
         Some(name) => {
@@ -245,7 +245,7 @@ fn literal(variable: &Variable, proposition: &Proposition) -> Option<Literal> {
 }
 
 impl Chain {
-    /// Appends the terms of propositions about outputs to the curves, after the curves of all stages.
+    /// Appends a curve for the term of each proposition about an output, after the curves of all stages.
     pub(super) fn conclusions(&mut self, propositions: &[AntecedentProposition]) {
         for literal in propositions
             .iter()
@@ -257,8 +257,8 @@ impl Chain {
 }
 
 impl Scratch {
-    /// Returns the degrees of the literals in the latest evaluation. They are empty if all rules are plain ANDs that a
-    /// table looks up; in that case every proposition of a firing rule has a degree above 0.
+    /// Returns the degrees of the literals in the latest evaluation. The slice is empty if all rules are plain ANDs
+    /// that a table looks up; in that case every proposition of a firing rule has a degree above 0.
     pub fn degrees(&self) -> &[f64] {
         let stage = match self.requested.checked_sub(1) {
             None => Some(&self.first),

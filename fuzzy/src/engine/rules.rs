@@ -93,7 +93,8 @@ const MAX_CELLS_A_RULE: usize = 32;
 const MAX_AXES: usize = 6;
 /// The maximum number of actions per cell of a uniform table.
 const MAX_ACTIONS_PER_CELL: usize = 2;
-/// The maximum number of steps for which evaluating all rules is faster than finding those that fire.
+/// The maximum total number of steps of all rules for which evaluating every rule is faster than finding the rules that
+/// fire.
 const MAX_STEPS_OF_FEW_RULES: usize = 64;
 
 /// Returns whether evaluating all rules is faster than finding those that fire.
@@ -102,8 +103,9 @@ fn are_few(drafts: &[IndexedRule]) -> bool {
     steps <= MAX_STEPS_OF_FEW_RULES
 }
 
-/// Returns whether a batch may evaluate all rules, each for several rows together. It may not if a firing strength is
-/// a sum of more than two numbers, because the numbers would be added in another order than in a single evaluation.
+/// Returns whether a batch may evaluate all rules, each for several rows together. This is not allowed if a firing
+/// strength is a sum of more than two numbers, because they would be added in another order than in a single
+/// evaluation.
 pub(super) fn may_be_programs(drafts: &[IndexedRule]) -> bool {
     let actions = || drafts.iter().flat_map(|draft| &draft.actions);
     let keeps_its_bits = |action: &Action| {
@@ -321,8 +323,8 @@ impl OwnedTable {
     }
 
     /// Adds the node of a trie for rules that share their first `depth` literals. Returns its index, and the maximum
-    /// size of the stack of nodes during a traversal. The stack contains either all children of the node, of which the
-    /// last one is visited first, or fewer children and the nodes below one of them.
+    /// size of the stack of nodes during a traversal. The children are visited in reverse order: while the nodes below
+    /// a child are on the stack, the stack also contains all children before it.
     fn node(&mut self, rules: &[PlainConjunction<'_>], depth: usize) -> (u32, u32) {
         let node = self.nodes.len();
         self.nodes.push(Node::default());

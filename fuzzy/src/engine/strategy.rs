@@ -5,8 +5,8 @@
 //!
 //! # How an output is reduced to a number
 //!
-//! [`method`] chooses the first row that applies. Methods with a [`ClosedForm`] can be evaluated by the table alone,
-//! also on board; `Integrated` needs the engine.
+//! [`method`] chooses the first row that applies. Methods with a [`ClosedForm`] can be evaluated by the table
+//! alone, also in firmware; `Integrated` needs the engine.
 //!
 //! | defuzzifier, operators, terms | [`Method`] | prepared in | evaluated in | ns |
 //! |---|---|---|---|---|
@@ -30,8 +30,8 @@
 //!
 //! # How rules fire
 //!
-//! `engine/rules.rs` chooses one layout for the rules. Blocks with their own operators or activation methods are always
-//! compiled to programs. All layouts give bitwise the same results.
+//! `engine/rules.rs` chooses one layout for the rules. Blocks with their own operators or activation methods are
+//! always compiled to programs. The results of all layouts are bitwise equal.
 //!
 //! | rules | layout | fired by | when |
 //! |---|---|---|---|
@@ -94,7 +94,8 @@ impl SingleRowMethod {
         }
     }
 
-    /// Evaluates the row, without working memory, if the rules are compiled to a plane. Returns whether they are.
+    /// Evaluates the row, without working memory, if the rules are compiled to a plane. Returns whether the row was
+    /// evaluated.
     #[inline(always)]
     #[cfg_attr(not(feature = "simd"), expect(unused_variables))]
     pub(super) fn by_plane(&self, inputs: &[f64], outcomes: &mut [Outcome]) -> bool {
@@ -113,7 +114,8 @@ impl SingleRowMethod {
     }
 }
 
-/// How firing strengths of the same consequent are combined before the aggregated set is integrated.
+/// The way in which the firing strengths of rules with the same consequent are combined before the aggregated set is
+/// integrated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum StrengthCombination {
     /// By maximum: `max_r min(h_r, mu) = min(max_r h_r, mu)`, and likewise for the other implications.

@@ -1,5 +1,6 @@
-//! Single evaluations with the widest vectors of the processor, for rule sets that are plain ANDs of straight terms of
-//! which at most two overlap. The operations and their order are those of the table, so the results are bitwise equal.
+//! Single evaluations with the widest vectors of the processor, for rule sets whose conditions are plain ANDs of
+//! straight terms, with at most two overlapping terms per input. The operations and their order are the same as in the
+//! table, so the results are bitwise equal.
 
 use fearless_simd::f64x4;
 use fearless_simd::prelude::*;
@@ -43,7 +44,8 @@ impl Cuts {
         for (i, cuts) in self.0.as_chunks().0.iter().enumerate() {
             above |= splat(simd, x).simd_ge(four(simd, cuts)).to_bitmask() << (4 * i);
         }
-        // The cuts are in ascending order, so those at or below `x` are the lowest bits.
+        // The cuts are in ascending order, so the bits of the cuts at or below `x` are the lowest bits of `above`.
+        // Their count is the index of the interval.
         (above + 1).trailing_zeros() as usize
     }
 }

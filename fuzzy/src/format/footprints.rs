@@ -112,7 +112,7 @@ fn blurred(
     let range = (variable.low, variable.high);
     let width = range.1 - range.0;
     if !(width > 0.0 && width.is_finite()) {
-        // An invalid range is reported on its own.
+        // An invalid range is reported separately.
         return None;
     }
     let function = &term.membership_function;
@@ -224,7 +224,7 @@ pub(super) fn uncertain_gaussian(
     Some(found.ok())
 }
 
-/// Returns an interval type-2 term of a footprint that is not based on an ordinary membership function.
+/// Returns an interval type-2 term for a footprint that is not based on an ordinary membership function.
 pub(super) fn of_footprint(
     name: String,
     footprint: Footprint,

@@ -62,8 +62,8 @@ fn has_list(key: &str, part: &Node) -> bool {
     }
 }
 
-/// Calls `change` for the terms of each variable, and then for the inputs, the outputs and the blocks. Its first
-/// argument describes the part for messages, such as ``the terms of `heat` ``.
+/// Calls `change` for the terms of each variable, and then for the inputs, the outputs and the blocks. The first
+/// argument of `change` describes the part for messages, such as ``the terms of `heat` ``.
 fn changed(mut tree: Node, change: &mut impl FnMut(&str, &mut Node)) -> Node {
     for (key, part) in entries_mut(&mut tree) {
         let Some(key) = key else { continue };

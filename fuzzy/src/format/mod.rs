@@ -284,7 +284,8 @@ fn outdented(fields: &Fields<'_>) -> Option<Diagnostic> {
     Some(Diagnostic::error("unknown-key", stray.key_span.clone(), message).help(help))
 }
 
-/// Returns a finding if the outputs are below `inputs`, because `outputs:` is missing above them or both were exchanged.
+/// Returns a finding if the outputs are below `inputs`, because `outputs:` is missing above them or the two keys were
+/// exchanged.
 fn outputs_among_inputs(fields: &Fields<'_>) -> Option<Diagnostic> {
     let variables = |key: &str| match fields.get(key).map(|node| &node.value) {
         Some(Value::Mapping(pairs)) => pairs.as_slice(),

@@ -73,7 +73,8 @@ pub(super) fn peaks_in_list(items: &[Node]) -> Option<String> {
     (!peaks.is_empty()).then(|| format!("write braces: `{{{}}}`", peaks.join(", ")))
 }
 
-/// Returns a suggestion for a partition of membership functions, or of intervals such as `{cold: [0, 10], hot: [10, 40]}`.
+/// Returns a suggestion for a `partition` that contains membership functions, or intervals such as `{cold: [0, 10],
+/// hot: [10, 40]}`.
 pub(super) fn other_terms(entries: &[Entry<'_>]) -> Option<String> {
     if entries
         .iter()

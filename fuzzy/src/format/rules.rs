@@ -106,7 +106,7 @@ fn continues(item: &Node) -> bool {
     })
 }
 
-/// Returns the rule of a mapping with its parts as keys: `{if: heat IS high, then: speed IS fast}`.
+/// Returns the text of a rule that is written as a mapping of its parts: `{if: heat IS high, then: speed IS fast}`.
 fn of_parts(fields: &Fields<'_>) -> Option<String> {
     let part = |name: &str| {
         let mut unknown = fields.unknown();

@@ -192,7 +192,7 @@ fn by_form(
     (form.build)(&values)
 }
 
-/// Returns a single finding for several parameters with other names, such as `{low: 1, mid: 2, high: 3}`.
+/// Returns a single finding for several parameters with unknown names, such as `{low: 1, mid: 2, high: 3}`.
 fn other_parameters(form: &ShapeForm, fields: &Fields<'_>) -> Diagnostic {
     let names = form.names();
     let unknown: Vec<&Entry<'_>> = fields.unknown().collect();

@@ -80,7 +80,8 @@ fn term(
         }));
         return None;
     };
-    // The valid keys depend on the membership function, so all keys are accepted here and checked there.
+    // The valid keys depend on the membership function, so all keys are accepted here and checked when that function is
+    // read.
     let keys = keys_of(pairs);
     let fields = entry.fields(&term, &keys, TERM_HELP, findings)?;
     let name = entry.key.to_string();

@@ -300,13 +300,15 @@ proptest! {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
-    /// The YAML organisation's crate reads the same model from our text, and we read the same model from its text.
+    /// The crate of the YAML organisation reads the same model from text that this crate wrote, and this crate reads
+    /// the same model from text that the other one wrote.
     #[test]
     fn generated_rule_sets_mean_the_same_to_another_yaml_reader(model in valid_model()) {
         let ours = crate::yaml::to_string(&model);
         let read = serde_yaml::from_str::<Model>(&ours);
         prop_assert_eq!(read.as_ref().ok(), Some(&model), "{}\n{:?}", ours, read);
-        // That crate writes text that consists of line breaks as a block that our YAML library reads as empty.
+        // If a text consists only of line breaks, that crate writes it as a block, which our YAML library reads as an
+        // empty text.
         let outputs = model.outputs.iter().map(|output| &output.variable);
         let texts = model.inputs.iter().chain(outputs).flat_map(|v| [&v.unit, &v.description]);
         let texts = texts.chain(model.rules.iter().map(|rule| &rule.note));

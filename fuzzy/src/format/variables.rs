@@ -116,7 +116,7 @@ fn entries<'n>(
     Some(entries)
 }
 
-/// Reads an input or the common part of an output.
+/// Reads an input, or the part of an output that has the same keys as an input.
 fn one<'n>(
     (kind, keys): (&str, &[&str]),
     entry: &Entry<'n>,
@@ -173,7 +173,8 @@ pub(super) fn outputs(
             if let Some(node) = fields.get("defuzzifier") {
                 let key = format!("the defuzzifier of {what}");
                 let word = node.choice(&key, &DEFUZZIFIERS, findings);
-                // An unknown word is replaced by a defuzzifier that fits the terms, so that these are not reported too.
+                // An unknown word is replaced by a defuzzifier that fits the terms, so that the terms are not reported
+                // as well.
                 let likely = || likely_defuzzifier(&output.variable);
                 output.defuzzifier = word.or_else(likely).unwrap_or(output.defuzzifier);
             }
@@ -637,7 +638,7 @@ fn rising(
                     .help("give each term of a partition a different peak"),
             );
         }
-        // An inverted range is reported on its own.
+        // An inverted range is reported separately.
         let has_range = variable.low < variable.high;
         if has_range && (peak < variable.low || peak > variable.high) {
             let (low, high) = (variable.low, variable.high);

@@ -33,8 +33,9 @@ macro_rules! operations {
                 $((Operation($number), $word, [$(stringify!($operand)),*].len())),+
             ];
 
-            /// Returns the result of the operation; `b` is ignored if it takes one operand. Comparisons and logical
-            /// operations return 1 for true and 0 for false; as operands, all numbers other than 0 are true.
+            /// Returns the result of the operation; `b` is ignored if the operation takes one operand. Comparisons
+            /// and logical operations return 1 for true and 0 for false; as operands, all numbers other than 0 are
+            /// true.
             fn of(self, a: f64, b: f64) -> f64 {
                 match self {
                     $(Operation::$name => {

@@ -11,7 +11,7 @@ use crate::{
 /// The last output of a chain as a model of its own. The outputs that it reads are inputs of this model; their values
 /// are computed from the inputs of the chain by its existing rules. A model without a chain is used unchanged.
 ///
-/// # Example: a fan that depends on a comfort for which samples have no value
+/// # Example: a fan whose speed depends on the comfort, which the samples do not contain
 /// ```
 /// use fuzzy::learn::{Learner, Settings, LastStage};
 ///

@@ -84,7 +84,7 @@ pub(super) fn resolve(learner: &Learner) -> LearnResult {
 
 fn decide(learner: &Learner, output: &Variable, cell: &Cell) -> Decision {
     let consequents = &learner.consequents;
-    // Among equal consequents, the one with more samples is selected, then the first.
+    // Among consequents with equal weights, the one with the most samples is selected; among those, the first one.
     let winner = |weigh: fn(&Votes) -> f64| {
         let mut votes = cell.votes.iter();
         let first = votes.next();

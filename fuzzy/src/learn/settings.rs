@@ -95,12 +95,12 @@ pub struct Settings {
     /// The minimum confidence of a rule.
     pub min_degree: f64,
     /// Whether an antecedent without a rule gets the consequent of the nearest antecedent. The distance is the number
-    /// of steps between terms; among equally near antecedents the one with the highest output is used. A note of the
-    /// rule states this.
+    /// of steps between terms; among equally near antecedents the one with the highest output is used. The note of
+    /// the rule states that it was completed in this way.
     pub complete: bool,
-    /// The inputs along which the consequents are made monotone, each with the direction. Neighbouring antecedents
-    /// that violate it are pooled. Rules that the model already contains are not changed. The output may still not be
-    /// monotone even if all rules are; `check::counterexamples` verifies the output.
+    /// The inputs along which the consequents are made monotone, each with the required direction. Neighbouring
+    /// antecedents that violate the direction are pooled. Rules that the model already contains are not changed. The
+    /// output may still not be monotone even if all rules are; `check::counterexamples` verifies the output.
     pub monotone: Vec<(String, Direction)>,
 }
 

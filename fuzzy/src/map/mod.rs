@@ -58,7 +58,7 @@ struct Cell {
 /// The number of cells per batch, chosen to fit the cache.
 const CELLS_PER_TASK: usize = 512;
 
-/// The state that evaluates batches of cells.
+/// A worker that evaluates batches of cells.
 struct Worker<'a> {
     engine: &'a Engine,
     grid: &'a Grid,

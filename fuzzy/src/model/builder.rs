@@ -124,7 +124,7 @@ impl ModelBuilder {
         self
     }
 
-    /// Returns the model. It is not validated here but when an engine is compiled from it.
+    /// Returns the model. It is validated later, when an engine is compiled from it.
     pub fn build(self) -> Model {
         self.model
     }

@@ -269,7 +269,7 @@ pub(crate) fn order(reads: &[Vec<OutputReference>]) -> Result<Vec<usize>, Vec<Ve
             order.push(ready);
             continue;
         }
-        // Each remaining output reads another remaining one, so following them leads into a cycle.
+        // Each remaining output reads another remaining output, so following these references leads into a cycle.
         let mut path = vec![first];
         while let Some(next) = path.last().and_then(|last| open(*last, &placed)) {
             if let Some(start) = path.iter().position(|output| *output == next) {
@@ -300,7 +300,8 @@ pub(crate) fn cycle_errors(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
         let rule = read.rule.map(|rule| {
             let mut place = format!(" in rule {}", rule + 1);
             let rule = model.rules.get(rule);
-            // If the rule does not conclude the output, the activation method of its block makes the output depend on it.
+            // If the rule does not conclude the output, the output depends on it through the activation method of the
+            // rule's block.
             if rule.is_some_and(|rule| !concludes(rule, &model.outputs[by])) {
                 place += " of its block";
             }

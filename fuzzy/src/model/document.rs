@@ -119,9 +119,9 @@ pub struct TermSpans {
     pub name: Range<usize>,
     /// The parameters of the membership function; empty in `partition` and `steps`.
     pub parameters: Vec<Range<usize>>,
-    /// The numbers of the membership function. A piecewise function has the x and the degree of each point, a partition
-    /// with peaks has the peak, `steps` has the limit, and a linear function has its coefficients and then its constant
-    /// (`0..0` if it is omitted). Empty for a formula and in an even partition.
+    /// The numbers of the membership function. For a piecewise function, these are the x and the degree of each point;
+    /// for a partition with peaks, the peak; for `steps`, the limit; for a linear function, the coefficients and then
+    /// the constant (`0..0` if it is omitted). Empty for a formula and in an even partition.
     pub numbers: Vec<Range<usize>>,
     /// Every occurrence of a variable in a formula or a linear function.
     pub names: Vec<Name>,

@@ -185,8 +185,8 @@ impl RuleMistake<'_> {
     }
 }
 
-/// Returns the name of a variable that has a term. The first argument is `input` or `output`, the second is the name of
-/// the term.
+/// A function that returns the name of an input or output that has a given term. Its first argument is `input` or
+/// `output`, the second is the name of the term.
 pub(crate) type Owner<'a> = &'a dyn Fn(&str, &str) -> Option<String>;
 
 fn with_help(diagnostic: Diagnostic, help: Option<String>) -> Diagnostic {

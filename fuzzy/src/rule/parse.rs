@@ -32,7 +32,8 @@ use super::{
 };
 use crate::diagnostic::{Diagnostic, nearest};
 
-/// The maximum nesting depth of brackets and NOTs; deeper nesting is an error because a tree is processed recursively.
+/// The maximum nesting depth of brackets and NOTs. Deeper nesting is an error, because syntax trees are processed
+/// recursively.
 pub const DEEPEST_NESTING: usize = 64;
 
 /// Parses a rule.
@@ -55,8 +56,8 @@ pub fn parse(text: &str) -> Result<Rule, Box<Diagnostic>> {
     parse_with_weight(text, &|_, _| None).map(|(rule, _)| rule)
 }
 
-/// Parses a rule, and also returns the position of its weight: the number after WITH, or the empty range after the
-/// conclusion. `owner` returns the input or output that has a term, for suggestions.
+/// Parses a rule. Also returns the position of its weight: that of the number after WITH, or an empty range after
+/// the conclusion if there is no weight. `owner` returns the input or output that has a term, for suggestions.
 pub(crate) fn parse_with_weight(
     text: &str,
     owner: Owner<'_>,
@@ -106,7 +107,7 @@ pub(super) fn keyword<'a>(rest: &'a str, expected: &str) -> Option<&'a str> {
     word.eq_ignore_ascii_case(expected).then_some(after)
 }
 
-/// Parses a hedge if the next word is one.
+/// Parses the next word if it is a hedge.
 fn hedge(rest: &str) -> Option<(&str, Hedge)> {
     Hedge::ALL
         .into_iter()
@@ -277,7 +278,7 @@ impl<'a> Source<'a> {
     }
 }
 
-/// Parses `part { word part }`.
+/// Parses one or more parts separated by a word: `part { word part }`.
 fn joined<'a>(
     mut rest: &'a str,
     word: &str,
@@ -294,7 +295,7 @@ fn joined<'a>(
     }
 }
 
-/// Returns the only part, or all parts joined.
+/// Returns the part if there is only one, and otherwise all parts joined by `join`.
 fn one_or(mut parts: Vec<Condition>, join: fn(Vec<Condition>) -> Condition) -> Condition {
     match (parts.pop(), parts.is_empty()) {
         (Some(only), true) => only,
@@ -305,8 +306,8 @@ fn one_or(mut parts: Vec<Condition>, join: fn(Vec<Condition>) -> Condition) -> C
     }
 }
 
-/// Returns whether the word after a term can only be a part of its name: it is neither a keyword nor a misspelt
-/// keyword, and not the input of another proposition.
+/// Returns whether the word after a term can only belong to the term's name: it is neither a keyword nor a
+/// misspelt keyword, and it does not begin another proposition.
 fn is_second_word(after: &str, next: &str) -> bool {
     is_plain_name(next)
         && nearest(next, ["AND", "OR", "THEN"]).is_none()

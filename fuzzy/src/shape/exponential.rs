@@ -13,7 +13,8 @@ pub(crate) fn exp_of_minus(x: f64) -> f64 {
     const ROUNDS: f64 = 6_755_399_441_055_744.0;
     const HIGH: f64 = 0.693_147_180_369_123_8;
     const LOW: f64 = 1.908_214_929_270_587_7e-10;
-    /// The coefficients of `(e^r - 1 - r) / r^2`, by interpolation at Chebyshev points, with a relative error of 1e-18.
+    /// The coefficients of a polynomial that approximates `(e^r - 1 - r) / r^2`, computed by interpolation at Chebyshev
+    /// points. The relative error is 1e-18.
     const C: [f64; 11] = [
         0.5,
         0.166_666_666_666_666_69,
@@ -66,8 +67,8 @@ mod tests {
     }
 
     proptest! {
-        /// The errors of both functions are below one unit in the last place, so their results are equal or adjacent
-        /// numbers.
+        /// Compares the results with `libm::exp`. The errors of both functions are below one unit in the last place,
+        /// so their results are equal or adjacent numbers.
         #[test]
         fn libm_agrees(x in prop_oneof![0.0..1.0, 0.0..40.0, 0.0..707.9]) {
             let x: f64 = x;

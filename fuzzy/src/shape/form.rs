@@ -25,7 +25,7 @@ pub(crate) struct ShapeForm {
 pub enum Role {
     /// A position on the axis, not left of the previous one.
     Ascending,
-    /// Above 0: a width, a deviation.
+    /// A number above 0, such as a width or a standard deviation.
     Positive,
     /// Any finite number.
     Number,

@@ -11,8 +11,9 @@ use super::ShapeKind;
 
 impl ShapeKind {
     /// Returns the value at which a monotone membership function takes the given degree in [0, 1], that is, the
-    /// inverse of its formula. On a plateau, this is the end of the slope. A sigmoid reaches 0 and 1, and a concave
-    /// shape reaches 0, only at infinity. NaN for shapes that are not monotone.
+    /// inverse of its formula. Where the degree is constant, the result is the end of the slope next to this
+    /// plateau. A sigmoid reaches 0 and 1, and a concave shape reaches 0, only at infinity. NaN for shapes that are
+    /// not monotone.
     pub(crate) fn inverse(self, parameters: &[f64; 4], points: &[[f64; 2]], degree: f64) -> f64 {
         let [a, b, ..] = *parameters;
         let along = |foot: f64, top: f64, part: f64| foot + (top - foot) * part;

@@ -1,5 +1,5 @@
-//! The outlines of membership functions: the corners of straight ones, and the positions at which an exact integral
-//! over curved ones is split.
+//! The outlines of membership functions: the corners of shapes made of straight lines, and for curved shapes the
+//! positions at which an exact integral is split.
 
 use alloc::{vec, vec::Vec};
 
@@ -16,8 +16,8 @@ enum Outline {
     /// Straight lines between corners `(x, degree)`, with non-decreasing x. Before the first and after the last corner,
     /// the degree is constant.
     Straight(Vec<(f64, f64)>),
-    /// Smooth between these positions, which are unordered, and close enough to each other that no flank is missed.
-    /// Positions that are not finite are ignored.
+    /// A curve that is smooth between these positions. The positions are unordered, and so close to each other that
+    /// an integral does not miss a flank. Positions that are not finite are ignored.
     Smooth(Vec<f64>),
 }
 
@@ -71,7 +71,8 @@ impl MembershipFunction {
                 slope,
             } => {
                 let reach = |level: f64| pow((1.0 - level) / level, 0.5 / slope);
-                // The positions must also be close to the middle if |t|^(2 slope) has an edge there.
+                // If the exponent 2 slope of |t|^(2 slope) is small, the curve has a sharp bend in the middle, so
+                // further positions close to the middle are needed.
                 let edge = if slope < 0.75 { 40 } else { 0 };
                 let near = (1..edge).map(|halvings| width * libm::exp2(-f64::from(halvings)));
                 Smooth(
@@ -144,7 +145,7 @@ impl MembershipFunction {
                 Smooth(vec![left, 0.5 * (left + right), right])
             }
             MembershipFunction::Constant { value } => Straight(vec![(0.0, into_unit(value))]),
-            // The integration of a formula splits the range evenly.
+            // Formulas need no positions: their integration splits the range evenly.
             MembershipFunction::Function { .. } | MembershipFunction::Linear { .. } => {
                 Smooth(vec![])
             }

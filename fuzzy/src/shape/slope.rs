@@ -11,7 +11,7 @@ use super::{
     smooth::{gaussian, sigmoid},
 };
 
-/// The fraction of an interval over which the slope of a formula is computed as a difference.
+/// The slope of a formula is computed as a difference over this fraction of an interval without kinks.
 const SHARE: f64 = 0.125;
 
 impl MembershipFunction {
@@ -187,7 +187,7 @@ fn smooth(x: f64, foot: f64, top: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Compares the slopes to differences at values that are not kinks.
+    /// Compares the slopes with difference quotients at values without a kink.
     #[test]
     fn slopes_equal_differences() {
         let shapes = [

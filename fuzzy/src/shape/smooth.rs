@@ -19,7 +19,7 @@ pub(super) fn gaussian(x: f64, mean: f64, sd: f64) -> f64 {
 
 #[inline(always)]
 pub(super) fn sigmoid(x: f64, inflection: f64, slope: f64) -> f64 {
-    // The exponent is negative on both sides, so that the exponential is at most 1.
+    // The argument of the exponential is negative on both sides, so its value is at most 1.
     let t = slope * (x - inflection);
     let e = exp_of_minus(libm::fabs(t));
     let degree = select_unpredictable(t >= 0.0, 1.0, e) / (1.0 + e);
@@ -49,8 +49,8 @@ const LEVELS: [f64; 11] = [
     1e-14, 1e-9, 1e-6, 1e-3, 0.03, 0.2, 0.5, 0.8, 0.97, 0.999, 0.999_999,
 ];
 
-/// Returns the middle of a shape, and the values at which its flank reaches each level, at a distance of
-/// `width * reach(level)` from the middle.
+/// Returns the middle of a shape, followed by the values at which its flank reaches the levels. The
+/// distance of a value from the middle is `width * reach(level)`.
 #[cfg(feature = "alloc")]
 pub(super) fn flank(middle: f64, width: f64, reach: impl Fn(f64) -> f64) -> Vec<f64> {
     let mut places = vec![middle];
@@ -59,7 +59,7 @@ pub(super) fn flank(middle: f64, width: f64, reach: impl Fn(f64) -> f64) -> Vec<
 }
 
 /// Returns the positions on one flank of a Gaussian; `sd` is negative for the left flank. The flank reaches a level at
-/// a distance of `sqrt(-2 ln level)` deviations.
+/// a distance of `sqrt(-2 ln level)` standard deviations from the mean.
 #[cfg(feature = "alloc")]
 pub(super) fn gaussian_flank(mean: f64, sd: f64) -> Vec<f64> {
     flank(mean, sd, |level| sqrt(-2.0 * log(level)))

@@ -43,7 +43,7 @@ fn part(length: f64, run: f64) -> f64 {
     if part > 0.0 { part } else { 0.0 }
 }
 
-/// Interpolates between the points. Differences are relative to the lower point, so that small degrees are accurate.
+/// Interpolates between the points. Differences are measured from the lower point, so that small degrees are accurate.
 pub(super) fn along(points: impl Iterator<Item = (f64, f64)>, x: f64) -> f64 {
     let (mut at_step, mut before) = (f64::NEG_INFINITY, None);
     for (px, py) in points {

@@ -158,7 +158,7 @@ fn rectangle_singleton_piecewise_constant() {
             (INFINITY, 0.0),
         ],
     );
-    // A rise, a step down at which the higher degree counts, a step up, and a last degree that continues.
+    // A rise, a step down at which the higher degree counts, a step up, and beyond the last point a constant degree.
     table(
         MembershipFunction::Piecewise {
             points: vec![

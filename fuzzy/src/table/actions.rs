@@ -8,7 +8,7 @@ use super::results::number_of;
 use super::rules::Action;
 use crate::rows::join;
 
-/// The strongest rule of an output in each of `L` rows. Of several equally strong rules it is the first in the model,
+/// The strongest rule of an output in each of `L` rows. Among equally strong rules, it is the first one in the model,
 /// regardless of the order in which they fire.
 #[derive(Debug, Clone, Copy)]
 pub struct StrongestRule<const L: usize = 1> {
@@ -29,7 +29,7 @@ impl StrongestRule {
 }
 
 impl<const L: usize> StrongestRule<L> {
-    /// No rule has fired yet.
+    /// The initial state, in which no rule has fired yet.
     pub const NONE: Self = StrongestRule {
         strength: [0.0; L],
         rule: [f64::INFINITY; L],

@@ -57,7 +57,7 @@ macro_rules! table_arrays {
             pairs: Pair,
             /// The closed forms of sets of straight terms that are cut.
             layered_sets: LayeredSet,
-            /// The bases of the layers of layered sets.
+            /// The bases from which the layers of layered sets start.
             bases: Base,
             /// The layers of layered sets.
             layers: Layers,

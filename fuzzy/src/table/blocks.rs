@@ -128,7 +128,7 @@ fn act<A: Arrays>(
     firing.act_with(&table.actions()[actions], |_| strength);
 }
 
-/// Passes the rules of all blocks that fire to `firing`, with the strengths that result from the activation methods.
+/// Passes the firing rules of all blocks to `firing`, with the strengths that result from the activation methods.
 /// `rules` has room for the rules of the largest block.
 // This function is separate, so that tables without blocks do not become slower.
 #[inline(never)]

@@ -94,8 +94,8 @@ impl Conjunctions {
 /// The indices in the model of the outputs and rules of a stage.
 #[derive(Debug, Clone, Copy)]
 pub struct StageIndices<'a> {
-    /// The index in the model of each output that the stage reads. The values of these outputs follow those of the
-    /// inputs.
+    /// The index in the model of each output that the stage reads. In [`Values::inputs`], the values of these
+    /// outputs follow the values of the inputs.
     pub reads: &'a [u32],
     /// The index in the model of each output of the stage.
     pub outputs: &'a [u32],
@@ -118,19 +118,19 @@ pub struct Chain<'a> {
 /// The memory that an evaluation needs in addition to the scratch memory.
 #[derive(Debug)]
 pub struct Values<'m> {
-    /// The values of the inputs, then of the outputs that a stage reads.
+    /// The values of the inputs of the model, followed by the values of the outputs that a stage reads.
     pub inputs: &'m mut [f64],
-    /// The outcomes of a stage; as many as the rule set has.
+    /// The outcomes of a stage. There must be room for as many outcomes as the model has outputs.
     pub own: &'m mut [Outcome],
 }
 
-/// The criterion by which a rule is selected.
+/// The criterion for selecting a rule.
 #[derive(Debug, Clone, Copy)]
 pub enum StageRuleCriterion {
-    /// The rule that raises an output of this value most: see [`Table::raised_by`].
+    /// Selects the rule that most raises an output with this value: see [`Table::raised_by`].
     Raises(f64),
-    /// The rule that contributes most to a proposition about the output. The number is the index among the propositions
-    /// about outputs.
+    /// Selects the rule that contributes most to a proposition about the output. The number is the index of the
+    /// proposition among all propositions about outputs.
     Concludes(usize),
 }
 

@@ -32,8 +32,8 @@ fn within(first: u32, end: u32, length: usize) -> bool {
 }
 
 impl Table<'_> {
-    /// Returns whether the value of an output is not an interval, or its type reduction is valid and the output with
-    /// its lower bounds exists.
+    /// Returns whether the fields of an output for type reduction are valid: either its value is not an interval, or
+    /// its type reduction is valid and the output with its lower bounds exists.
     fn has_lower_bounds(&self, output: &Output) -> bool {
         let is_valid = (output.reduction as usize) <= TypeReduction::ALL.len();
         let lower = self.outputs.get(output.lower as usize);

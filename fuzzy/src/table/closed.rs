@@ -57,20 +57,20 @@ impl ClosedForm {
     }
 }
 
-/// The coefficients of two neighbouring terms of a partition, and of the overlap of each with the term to its right.
-/// Two numbers fill a vector register on every processor that has vectors.
+/// The coefficients of two neighbouring terms of a partition, and of the overlap of each with the term to its
+/// right. Two numbers fill a vector register on every processor that has vector instructions.
 ///
-/// Consider a term cut at firing strength h. A slope of width w with its middle at m (relative to the middle of the
-/// range) contributes the area `w (h - h^2 / 2)` and the first moment `m area + s w^2 (h^2 / 4 - h^3 / 6)`, with s = 1
-/// if the slope rises and s = -1 if it falls. A plateau contributes `w h` and `m w h`. The sums over the slopes and
-/// plateaus of a term are polynomials in h. Where a falling slope and a rising slope overlap, the minimum of the two
-/// cut terms has the area `w v (1 - v)` with `v = min(h_falling, h_rising, 1/2)`, symmetric about m. The area of the
-/// union is the sum of the areas minus the overlaps.
+/// Consider a term cut at firing strength h. A slope of width w with its middle at m (relative to the middle of
+/// the range) contributes the area `w (h - h^2 / 2)` and the first moment `m area + s w^2 (h^2 / 4 - h^3 / 6)`,
+/// with s = 1 if the slope rises and s = -1 if it falls. A plateau contributes `w h` and `m w h`. The sums over
+/// the slopes and plateaus of a term are polynomials in h. Where a falling slope and a rising slope overlap, the
+/// minimum of the two cut terms has the area `w v (1 - v)` with `v = min(h_falling, h_rising, 1/2)`, symmetric
+/// about m. The area of the union is the sum of the areas minus the overlaps.
 ///
-/// Consider a term scaled by firing strength h. Such a slope contributes the area `w h / 2` and the first moment
-/// `(m / 2 + s w / 12) w h`. The minimum of a falling slope scaled by a and a rising slope scaled by b is a triangle
-/// with its peak at the fraction `t = a / (a + b)` of the overlap. It has the area `w b t / 2` and its centroid at
-/// `m + w (2 t - 1) / 6`.
+/// Consider a term scaled by firing strength h. A slope as above contributes the area `w h / 2` and the first
+/// moment `(m / 2 + s w / 12) w h`. The minimum of a falling slope scaled by a and a rising slope scaled by b is a
+/// triangle with its peak at the fraction `t = a / (a + b)` of the overlap. It has the area `w b t / 2` and its
+/// centroid at `m + w (2 t - 1) / 6`.
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(C)]
@@ -215,7 +215,7 @@ pub(super) fn closed<A: Arrays, const L: usize>(
     true
 }
 
-/// Returns the areas and moments of a set for which they are a few sums; 0 for any other output.
+/// Returns the areas and moments of a set if its closed form computes them by a few sums; 0 for any other output.
 #[inline(always)]
 fn integrals<A: Arrays, const L: usize>(
     table: &A,

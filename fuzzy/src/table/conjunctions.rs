@@ -47,7 +47,7 @@ impl<const L: usize> PartialConjunction<L> {
         at: [0; L],
     };
 
-    /// Returns the conjunction of both, by `and`.
+    /// Returns the conjunction of the two entries, combined by `and`.
     #[inline(always)]
     fn and(&self, other: &Self, and: impl Fn(f64, f64) -> f64) -> Self {
         let mut both = PartialConjunction::NONE;
@@ -213,7 +213,7 @@ pub(super) fn fire_dense<A: Arrays, const L: usize>(
     }
 }
 
-/// Writes the degrees above 0 and their offsets, and returns their number in each row.
+/// Writes the degrees above 0 with their offsets. Returns how many there are in each row.
 #[inline(always)]
 fn alive_terms<A: Arrays, const L: usize>(
     table: &A,

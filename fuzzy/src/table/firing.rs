@@ -288,7 +288,7 @@ fn fire_with<A: Arrays, const L: usize, const CELLS: bool>(
     }
 }
 
-/// Clamps a degree to [0, 1], which it may have left by rounding.
+/// Clamps to [0, 1] a degree that rounding may have moved slightly outside.
 #[inline(always)]
 fn into_unit(degree: f64) -> f64 {
     larger(0.0, smaller(1.0, degree))

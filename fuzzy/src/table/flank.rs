@@ -12,9 +12,9 @@ use super::operators::{larger, smaller};
 ///
 /// The foot of a flank is its lower end. The tail up to `x` is the area and first moment between the foot and `x`.
 /// Because tails are measured from the foot, the area of a low tail is accurate to its last digits. The tail of a
-/// Gaussian is `sd sqrt(pi/2) (erfc(z) - erfc(z_foot))` with `z = |x - mean| / (sd sqrt(2))`. The tail of a straight
-/// flank is a trapezoid. All other flanks have [`Knot`]s, and use Gauss-Legendre quadrature with 8 nodes between a knot
-/// and `x`.
+/// Gaussian is `sd sqrt(pi/2) (erfc(z) - erfc(z_foot))` with `z = |x - mean| / (sd sqrt(2))`. The tail of a
+/// straight flank is a trapezoid. The tail of any other flank is the tail up to a [`Knot`], plus a Gauss-Legendre
+/// quadrature with 8 nodes between this knot and `x`.
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
@@ -45,7 +45,7 @@ pub struct Flank {
     pub end_knot: u32,
 }
 
-/// The tail of a flank up to a value. The first knot of a flank is at its foot.
+/// A knot: a value at which the tail of a flank is tabulated. The first knot of a flank is at its foot.
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(C)]
@@ -82,8 +82,8 @@ impl Flank {
         self.left < self.right
     }
 
-    /// Returns whether the degree is exactly constant. A curve does not count even if its ends are equal, because they
-    /// may differ by less than the last digit.
+    /// Returns whether the degree is exactly constant. A curve does not count as constant, even if the computed
+    /// degrees at its ends are equal: the exact degrees may differ by less than the last digit.
     #[inline(always)]
     pub(crate) fn is_level(&self) -> bool {
         self.left == self.right && self.kind == ShapeKind::PIECEWISE
@@ -130,7 +130,7 @@ impl Flank {
         0.5 * z * z
     }
 
-    /// Returns the value at which the flank has a degree, which must be between the degrees of its ends.
+    /// Returns the value at which the flank has the given degree, which must be between the degrees of its ends.
     pub(crate) fn position_of_degree(&self, degree: f64) -> f64 {
         let [a, b, c, d] = self.parameters;
         let level = smaller(1.0, degree / self.height);

@@ -37,9 +37,9 @@ pub struct Line {
     pub foot: f64,
     /// The width of the slope; negative if the slope falls.
     pub run: f64,
-    /// The degree at the foot of the line.
+    /// The degree at the foot of the slope.
     pub base: f64,
-    /// The difference between the degrees at the top and at the foot of the line.
+    /// The difference between the degrees at the top and at the foot of the slope.
     pub rise: f64,
     /// The index of the literal among those of its input; in a uniform table, its offset among the cells.
     pub literal: u32,

@@ -1,9 +1,10 @@
 //! The centroid of straight terms that are cut at their firing strengths, by a formula: the set is split into
 //! horizontal layers.
 //!
-//! At any degree, the maximum of cut terms is as wide as the highest term whose firing strength exceeds that degree.
-//! Therefore, on a part of the range where no terms cross, a term contributes from the largest firing strength of the
-//! terms above it (the base of its layer) up to its own firing strength, if that is larger.
+//! Consider a part of the range where no terms cross. At any degree, the maximum of the cut terms covers the same
+//! values as one single term: the highest one whose firing strength exceeds that degree. A term therefore
+//! contributes the layer that extends from the largest firing strength of the terms above it (the base of the
+//! layer) up to its own firing strength, if that is larger.
 
 use super::Arrays;
 use super::operators::{larger, smaller};
@@ -30,8 +31,8 @@ pub struct LayeredSet {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[repr(C)]
 pub struct Base {
-    /// The index in the set, plus 1, of the base of all terms but the last. 0 if there is no other term; the base is
-    /// then 0.
+    /// 1 plus the index in the set of the base of all terms but the last. 0 if there is no other term; their largest
+    /// firing strength is then 0.
     pub others: u32,
     /// The index of the last term's firing strength among those of the output.
     pub strength: u32,
@@ -48,10 +49,10 @@ pub struct Base {
 /// moment(h) = moment[0] u + moment[1] v^2 + moment[2] v^3
 /// ```
 ///
-/// The layer is the difference between these at two degrees. For a part of width w whose middle is at m (relative
-/// to the middle of the range), the coefficients are `w, -w / 2d` and `w m, -w l / 2d, s w^2 / 6d^2`, with
-/// `d = high - low`, l the value at the lower end, and s = 1 if the term falls, -1 if it rises. If it is level,
-/// the coefficients of the powers of v are 0.
+/// The area and moment of a layer are the differences between the values of these formulas at its upper end and at
+/// its base. For a part of width w whose middle is at m (relative to the middle of the range), the coefficients
+/// are `w, -w / 2d` and `w m, -w l / 2d, s w^2 / 6d^2`, with `d = high - low`, l the value at the lower end, and
+/// s = 1 if the term falls, -1 if it rises. If the term is level, the coefficients of the powers of v are 0.
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(C)]
@@ -101,9 +102,9 @@ impl LayeredSet {
         &table.layers()[self.first_layer as usize..self.end_layer as usize]
     }
 
-    /// Returns the area and moment of the term with the given index of a firing strength, if this strength is 1 and
-    /// there is no other term.
-    pub(super) fn alone<A: Arrays>(&self, table: &A, strength: u32) -> (f64, f64) {
+    /// Returns the area and moment of a term that alone has a firing strength of 1 while no other term fires.
+    /// `strength` is the index of its firing strength.
+    pub(super) fn of_single_term<A: Arrays>(&self, table: &A, strength: u32) -> (f64, f64) {
         let layers = self.layers(table).iter();
         let parts = layers.filter(|four| four.strength == strength);
         parts.fold((0.0, 0.0), |(area, moment), four| {

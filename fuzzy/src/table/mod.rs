@@ -136,11 +136,12 @@ pub enum Conjunctions {
 pub struct Sizes {
     /// The number of literals; 0 if no rule reads their degrees by index.
     pub degrees: u32,
-    /// The maximum number of terms of an input with a degree above 0 at the same value, plus two.
+    /// The maximum number of terms of an input that can have a degree above 0 at the same value, plus two.
     pub alive: u32,
     /// The maximum number of cells or edges that are stored at the same time.
     pub partial: u32,
-    /// The maximum of the depth of the deepest program, and the number of bases of the largest layered set plus one.
+    /// The larger of two numbers: the depth of the deepest program, and one more than the number of bases of the
+    /// largest layered set.
     pub stack: u32,
     /// The number of firing strengths of all outputs, plus one that no output uses.
     pub strengths: u32,
@@ -350,9 +351,9 @@ pub(crate) fn evaluate_row<A, N, P, S>(
     }
 }
 
-/// Evaluates the values of each input in `L` rows into the results of each output; the table must not have blocks.
-/// `in_row` returns the value in one row of an output that [`closed`] does not support, given its index, the row and
-/// the firing strengths of all rows.
+/// Evaluates `L` rows of input values into the results of each output; the table must not have blocks. `in_row`
+/// returns the value in one row of an output that [`closed`] does not support, given its index, the row and the
+/// firing strengths of all rows.
 #[inline(always)]
 pub(crate) fn evaluate_rows<A, N, P, S, const L: usize, const CELLS: bool>(
     table: &A,
@@ -385,7 +386,8 @@ pub(crate) fn clamp<A: Arrays, const L: usize>(
         infinite: [0; L],
     };
     for ((input, inside), values) in table.inputs().iter().zip(values).zip(inputs) {
-        // NaN is replaced by the upper end.
+        // The loop above flags any value that is not finite as clamped. Clamping is rare, so this check is usually
+        // skipped.
         let nearest = each(|row| larger(smaller(values[row], input.high), input.low));
         for row in 0..L {
             input_flags.clamped[row] |= u64::from(nearest[row] != values[row]);

@@ -33,7 +33,7 @@ pub(crate) fn root(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
     for step in 0..200 {
         let guess = b - fb * (b - a) / (fb - fa);
         let middle = 0.5 * (a + b);
-        // Every third step halves, so that a flat function cannot stall the search.
+        // Every third step halves the interval, so that a flat function cannot stall the search.
         let x = if step % 3 != 2 && guess > a && guess < b {
             guess
         } else {

@@ -200,7 +200,7 @@ impl Conjunction {
                 }
             }
             Conjunction::NilpotentMinimum => {
-                // `a + b` is 1 up to rounding if b is `1 - a`.
+                // If b was computed as `1 - a`, `a + b` may differ from 1 by rounding.
                 let (small, large) = (smaller(a, b), larger(a, b));
                 if large == 1.0 || small - (1.0 - large) > MIN_STRENGTH {
                     small
@@ -367,7 +367,7 @@ mod tests {
             for b in DEGREES {
                 for (and, ..) in CONJUNCTIONS {
                     let both = and.of(a, b);
-                    // The inequality is exact up to rounding.
+                    // The inequality holds up to rounding.
                     let most = a.min(b) * (1.0 + 4e-16);
                     assert!(
                         (0.0..=most).contains(&both),

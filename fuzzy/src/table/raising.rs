@@ -1,4 +1,4 @@
-//! The rule that raises an output most.
+//! Finding the rule that raises an output most.
 
 use core::ops::DerefMut;
 
@@ -108,7 +108,7 @@ where
         // No memory for the bases of layers is available, because the firing rules use it.
         let alone = if of.form() == ClosedForm::Layers {
             let set = table.layered_sets().get(of.first as usize)?;
-            Some(of.centroid(set.alone(table, index as u32)))
+            Some(of.centroid(set.of_single_term(table, index as u32)))
         } else if closed(table, of, strengths, &mut [], values, &mut value) {
             Some(value[0])
         } else {
@@ -127,7 +127,7 @@ where
     largest.most.map(|(_, rule)| rule as usize)
 }
 
-/// Records the rule that raises an output most.
+/// A consumer of the firing rules, which records the rule that raises an output most.
 struct LargestIncrease<F> {
     least: f64,
     output: u32,

@@ -1,17 +1,17 @@
 //! Type reduction without integration.
 //!
-//! For weighted numbers it is the interval of `sum(w x) / sum(w)` over all weights between their bounds.
+//! For weighted numbers, the result is the interval of `sum(w x) / sum(w)` over all weights between their bounds.
 //!
 //! The left end is reached by weights that are as large as possible for the numbers left of it, and as small as
-//! possible for the others. So it is the root c of
+//! possible for the others. It is therefore the root c of
 //!
 //! ```text
 //! F(c) = sum of w_upper (c - x) over x < c  +  sum of w_lower (c - x) over x > c
 //! ```
 //!
 //! F is a convex polygon that never decreases, so Newton's method approaches the root from one side and ends after
-//! finitely many steps. The right end is its mirror image. If all lower bounds are 0, each number can be the
-//! average. `defuzzify/reduction.rs` has the same search for fuzzy sets.
+//! finitely many steps. The right end is found in the same way, with left and right exchanged. If all lower bounds
+//! are 0, the average can be any of the numbers. `defuzzify/reduction.rs` has the same search for fuzzy sets.
 //!
 //! For fuzzy sets with a closed form, only the type reductions that give a single value are supported. They are
 //! computed from the areas and centroids of the lower and the upper set.
@@ -219,8 +219,8 @@ pub(crate) fn sum(points: impl Iterator<Item = WeightedNumber>) -> Option<(f64, 
 }
 
 /// Returns an end of the interval by Newton's method. `sums` returns the area and the moment about x of a set that
-/// consists of two parts: between x and the side of the requested end it equals the upper set, and on the other side of
-/// x the lower set.
+/// consists of two parts: on the side of x towards the requested end it equals the upper set, and on the other side the
+/// lower set.
 pub(crate) fn search(
     end: IntervalEnd,
     start: f64,
@@ -231,8 +231,8 @@ pub(crate) fn search(
     for step in 0..MAX_STEPS {
         let (area, moment) = sums(x);
         let next = larger(low, smaller(high, x + moment / area));
-        // The first step may come from the wrong side; all later ones approach the root from inside the interval, up to
-        // rounding.
+        // The start may be on the wrong side of the end, outside the interval. After the first step, all steps approach
+        // the end from inside the interval, up to rounding.
         let approaches = match end {
             IntervalEnd::Left => next < x,
             IntervalEnd::Right => next > x,
@@ -256,10 +256,10 @@ mod tests {
 
     #[test]
     fn averages_equal_values_computed_by_hand() {
-        // The weights of 0 and 10 lie in [1, 3]: 1 * 10 / 4 and 3 * 10 / 4.
+        // The numbers 0 and 10 have weights in [1, 3]. The smallest average is 1 * 10 / 4, the largest 3 * 10 / 4.
         let two = points(&[(10.0, 1.0, 3.0), (0.0, 1.0, 3.0)]);
         assert_eq!(average(two), Some((2.5, 7.5)));
-        // Equal bounds give a number.
+        // With equal bounds, the interval is a single number.
         let crisp = points(&[(4.0, 0.5, 0.5), (8.0, 0.5, 0.5)]);
         assert_eq!(average(crisp), Some((6.0, 6.0)));
         // If all lower bounds are 0, the average can be any value from the smallest to the largest number whose upper
@@ -269,8 +269,8 @@ mod tests {
         assert_eq!(average(points(&[(4.0, 0.0, 0.0)])), None);
     }
 
-    /// The uncertainty bounds of the left end as Wu and Mendel print them, for rules in ascending order: the bound below
-    /// and the bound above it.
+    /// Returns the uncertainty bounds of the left end, by the formulas printed by Wu and Mendel for rules in ascending
+    /// order: the bound below the end and the bound above it.
     fn wu_mendel_left(points: &[WeightedNumber]) -> (f64, f64) {
         let sum = |f: &dyn Fn(&WeightedNumber) -> f64| points.iter().map(f).sum::<f64>();
         let (lower, upper) = (sum(&|p| p.lower), sum(&|p| p.upper));
@@ -349,7 +349,7 @@ mod tests {
     #[test]
     fn an_almost_empty_lower_set_ends_near_the_support() {
         for tiny in [1e-6, 1e-12, 1e-100, 1e-300] {
-            // The root of c^3 / 6 - tiny c = tiny / 2 (1 - c)^2 is close to that of c^3 = 3 tiny.
+            // The root of c^3 / 6 - tiny c = tiny / 2 (1 - c)^2 is close to the root of c^3 = 3 tiny.
             let upper = |x: f64| (0.5 * x * x, -x * x * x / 6.0);
             let lower = |x: f64| (tiny * (1.0 - x), 0.5 * tiny * (1.0 - x) * (1.0 - x));
             let left = search(IntervalEnd::Left, 2.0 / 3.0, (0.0, 1.0), |x| {

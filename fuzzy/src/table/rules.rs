@@ -33,8 +33,8 @@ impl Action {
 }
 
 /// An input of a uniform table. All its terms are straight, and at most two overlap. Each interval has exactly two
-/// lines, if necessary padded with lines of degree 0. Every value therefore visits the same number of cells, without a
-/// branch that a processor could mispredict.
+/// lines, if necessary padded with lines of degree 0. Therefore the same number of cells is visited for every value,
+/// without a branch that a processor could mispredict.
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
@@ -67,7 +67,7 @@ impl Dimension {
     pub const NONE: u32 = u32::MAX;
 }
 
-/// A node of a trie of rules. Its paths are literals in ascending order.
+/// A node of a trie of rules. Each path through the trie is a sequence of literals in ascending order.
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[repr(C)]
@@ -101,7 +101,8 @@ pub struct Edge {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub struct Program {
-    /// The weight of the rule, which multiplies the degree before the hedges. The weights of the actions are not used.
+    /// The weight of the rule, by which the degree is multiplied before the hedges are applied. The weights of the
+    /// actions are not used.
     pub weight: f64,
     /// The index of the first step.
     pub first_step: u32,

@@ -1,10 +1,10 @@
 //! Prepared fuzzy sets: outputs whose terms overlap or are curved, or whose defuzzifier is not the centroid of a
 //! partition.
 //!
-//! Everything that does not depend on the inputs is computed when a model is compiled: the [`Flank`]s of the terms and,
-//! for aggregation by maximum, the [`Section`]s of the range in which no two terms cross. With maximum and minimum, the
-//! order of the terms on a section does not depend on their firing strengths; with the product, two terms cross at most
-//! once on a section.
+//! Everything that does not depend on the inputs is computed when a model is compiled: the [`Flank`]s of the terms
+//! and, for aggregation by maximum, the [`Section`]s of the range in which no two terms cross. If the implication
+//! is the minimum, the order of the terms on a section does not depend on their firing strengths; if it is the
+//! product, two terms cross at most once on a section.
 
 use super::flank::{Flank, Knot, Measure};
 use super::numeric::root;
@@ -150,7 +150,8 @@ struct SetSegment<'t> {
     from_left: bool,
 }
 
-/// Returns the area and the moment of a prepared set, in the unit of the other closed forms: 1, except for extreme ranges.
+/// Returns the area and the moment of a prepared set, in the unit of length of the other closed forms. For ranges that
+/// are not extreme, this unit is 1.
 pub(super) fn integrals<A: Arrays>(
     table: &A,
     output: &Output,
@@ -206,7 +207,7 @@ impl<'t> SetArrays<'t> {
             for (term, &strength) in self.terms.iter().zip(strengths) {
                 if strength > 0.0 {
                     for flank in self.flanks_of(term) {
-                        let (a, m) = self.alone(flank, strength);
+                        let (a, m) = self.of_single_flank(flank, strength);
                         area += a;
                         moment += m;
                     }
@@ -228,7 +229,7 @@ impl<'t> SetArrays<'t> {
     }
 
     /// Returns the area and moment of a flank that is cut or scaled, as if it were the only one.
-    fn alone(&self, flank: &Flank, strength: f64) -> (f64, f64) {
+    fn of_single_flank(&self, flank: &Flank, strength: f64) -> (f64, f64) {
         if self.scales {
             (strength * flank.area, strength * flank.moment)
         } else {
@@ -249,9 +250,10 @@ impl<'t> SetArrays<'t> {
 
     /// Visits the parts of the maximum of terms that are cut off at their firing strengths.
     ///
-    /// Strands are ordered from the highest to the lowest, so a strand contributes only if it is cut off above all
-    /// previous ones. It then contributes the part in which its degree is between their level and its own level. The
-    /// part in which its degree is higher remains for the following strands.
+    /// Strands are ordered from the highest to the lowest, so a strand contributes only if it is cut off at a higher
+    /// level than all strands before it. The set follows the strand where its degree is between the previous level and
+    /// its own level. Where its degree is lower, the set is a plateau at the previous level. Where its degree is
+    /// higher, the following strands determine the set.
     #[inline(always)]
     fn cut(
         &self,
@@ -273,7 +275,8 @@ impl<'t> SetArrays<'t> {
             } else {
                 (strand.right, strand.left)
             };
-            // The remaining part is at the lower or the higher end of the strand.
+            // Visits the side on which the strand is low, up to `clip`. The remaining part is on the other side: at the
+            // upper end if the strand rises, at the lower end if it falls.
             let mut leave = |from: &mut f64, to: &mut f64, clip: f64, degree, part: Option<f64>| {
                 let x = larger(*from, smaller(*to, clip));
                 let degree = if x == clip { degree } else { f64::NAN };
@@ -345,7 +348,8 @@ impl<'t> SetArrays<'t> {
                 let (first, second) = (self.flank(strand), self.flank(top));
                 let difference =
                     |x: f64| scale(strand) * first.degree(x) - scale(top) * second.degree(x);
-                // The strand is higher at the end. Check whether it is already higher at the nearest known crossing.
+                // The strand is higher than `top` at the end of the section. Check whether it is already higher at the
+                // nearest known crossing.
                 let after = if to < section.to {
                     difference(to)
                 } else {
@@ -365,7 +369,8 @@ impl<'t> SetArrays<'t> {
                 {
                     from + (to - from) * (before / (before - after))
                 } else if first.kind == ShapeKind::GAUSSIAN && second.kind == ShapeKind::GAUSSIAN {
-                    // The logarithm of the ratio has the same sign and needs no exponentials.
+                    // The logarithm of the ratio of the degrees has the same sign as their difference, and needs no
+                    // exponentials.
                     let ratio =
                         libm::log((scale(strand) * first.height) / (scale(top) * second.height));
                     root(from, to, |x| ratio + second.exponent(x) - first.exponent(x))

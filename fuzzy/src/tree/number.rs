@@ -22,8 +22,8 @@ pub fn percentage_of_share(share: f64) -> f64 {
     libm::round(1e8 * share) / 1e6
 }
 
-/// Returns advice for a percentage in place of a share, `80` for 0.8; `None` for numbers that are probably not
-/// percentages.
+/// Returns advice for a percentage that was written in place of a share, such as `80` instead of 0.8; `None`
+/// for numbers that are probably not percentages.
 #[must_use]
 pub fn percentage_advice(number: f64) -> Option<String> {
     (10.0..=100.0)
@@ -127,7 +127,7 @@ fn separators(text: &str) -> Option<String> {
         .then(|| format!("write the number without separators: `{number}`"))
 }
 
-/// Returns a number in hexadecimal, octal or binary notation, or with `_` between digits.
+/// Parses a number in hexadecimal, octal or binary notation, or with `_` between digits.
 fn other_notation(text: &str) -> Option<u64> {
     let prefixed = [("0x", 16), ("0o", 8), ("0b", 2)].into_iter();
     let mut numbers = prefixed.filter_map(|(prefix, radix)| {

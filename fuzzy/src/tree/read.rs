@@ -16,7 +16,7 @@ use crate::{
     foreign,
 };
 
-/// The suggestion for a comment such as `5 // five`.
+/// The known keys that the author probably meant by unknown keys. They are not reported as missing in addition.
 const COMMENT: &str = "a comment begins with `#`, not with `//`";
 
 /// The fields of a mapping whose keys are known.
@@ -26,7 +26,7 @@ pub struct Fields<'a> {
     /// The position at which missing keys are reported.
     place: Range<usize>,
     entries: Vec<Entry<'a>>,
-    /// The known keys that unknown keys probably refer to; they are not reported as missing as well.
+    /// The positions of the unknown keys that do not resemble any known key.
     meant: Vec<String>,
     unknown: Vec<&'a str>,
     /// The positions of the unknown keys that resemble no known one.
@@ -149,7 +149,8 @@ impl<'a> Fields<'a> {
 }
 
 impl<'a> Entry<'a> {
-    /// Reads the value as a mapping, like [`Node::fields`], but reports missing keys at the position of this key.
+    /// Reads the value of this key as a mapping, like [`Node::fields`], but reports missing keys at the position of
+    /// this key.
     pub fn fields(
         &self,
         what: &str,
@@ -167,7 +168,8 @@ impl<'a> Entry<'a> {
 
 impl Node {
     /// Reads a mapping with known keys. `what` names it in messages, as in ``input `heat` ``. Unknown keys, repeated
-    /// keys and values other than a mapping are reported; `help` is the suggestion for other values and has an example.
+    /// keys and values other than a mapping are reported. `help` is the suggestion for a value that is not a mapping;
+    /// it contains an example.
     pub fn fields<'a>(
         &'a self,
         what: &str,

@@ -102,7 +102,7 @@ impl Validator<'_> {
         }
     }
 
-    /// Requires that all blocks that conclude a fuzzy output have the same implication.
+    /// Requires that all blocks whose rules conclude the same fuzzy output have the same implication.
     fn one_implication(&mut self, spans: &Spans) {
         let model = self.model;
         for output in &model.outputs {

@@ -263,7 +263,7 @@ impl Validator<'_> {
             let (name, peak) = term.name.rsplit_once(signs)?;
             Some((name.trim_end_matches(signs), peak.parse::<f64>().ok()?))
         });
-        // Names such as `stage 1` and `stage 2` are not names with peaks.
+        // Names such as `stage 1` and `stage 2` are plain names, and not names followed by a peak.
         let is_distinct = |peaks: &Vec<(&str, f64)>| {
             peaks
                 .iter()

@@ -227,8 +227,8 @@ impl Validator<'_> {
         }
     }
 
-    /// Requires that the terms of a Takagi-Sugeno output are numbers and linear functions, and those of a Mamdani
-    /// output fuzzy sets.
+    /// Requires that the terms of a Takagi-Sugeno output are numbers or linear functions, and that the terms of a
+    /// Mamdani output are fuzzy sets.
     pub(super) fn consequents_fit(&mut self, what: &str, output: &Output, spans: &VariableSpans) {
         const WEIGHTED: &str = "it needs `defuzzifier: weighted_average` or `weighted_sum`";
         let weighted = output.defuzzifier.takes_numbers();

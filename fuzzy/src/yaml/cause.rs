@@ -187,7 +187,8 @@ fn no_key(text: &str, start: usize) -> Option<Diagnostic> {
     })
 }
 
-/// Returns a finding for a double quote that is not closed in its line; the quote of a later line, at `start`, closes it.
+/// Returns a finding for a double quote that is not closed on its own line, so that a quote on a later line, at
+/// `start`, closes it.
 fn open_quote(text: &str, start: usize) -> Option<Diagnostic> {
     let mut at = 0;
     let mut open = None;

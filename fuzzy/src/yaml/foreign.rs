@@ -1,4 +1,5 @@
-//! Files of other kinds and other programs in place of a rule set, recognised by their first lines.
+//! Recognition of files of other kinds, and of files of other programs, that were passed instead of a rule set. They
+//! are recognised by their first lines.
 
 use alloc::{format, string::String, vec::Vec};
 

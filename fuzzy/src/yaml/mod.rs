@@ -365,7 +365,7 @@ fn scalar(document: &str, value: &str, style: ScalarStyle, bytes: &Range<usize>)
     } else {
         Offsets::Each(table(written, value, style, bytes.start))
     };
-    // A missing value after a key is reported as `~` without a position.
+    // The YAML library reports a missing value after a key as `~` without a position.
     let text = if bytes.is_empty() { "" } else { value };
     Scalar {
         text: String::from(text),
@@ -374,8 +374,8 @@ fn scalar(document: &str, value: &str, style: ScalarStyle, bytes: &Range<usize>)
     }
 }
 
-/// Returns the span of each character of a scalar's value. The value and the written text have the same characters,
-/// except that white space is folded and indented, and quoted text may contain escapes.
+/// Returns the span of each character of a scalar's value. The value has the same characters as the written text,
+/// except that folding changes white space, and that escapes are resolved in quoted text.
 fn table(written: &str, value: &str, style: ScalarStyle, start: usize) -> Vec<ScalarCharacter> {
     let rest = |from: usize| written.get(from..).unwrap_or("");
     let quoted = matches!(style, ScalarStyle::SingleQuoted | ScalarStyle::DoubleQuoted);
@@ -389,7 +389,7 @@ fn table(written: &str, value: &str, style: ScalarStyle, start: usize) -> Vec<Sc
         let length = match (style, first) {
             (ScalarStyle::DoubleQuoted, Some('\\')) => escape(rest(here)),
             (ScalarStyle::SingleQuoted, Some('\'')) => 2,
-            // For white space that is removed by folding, the following character gets the position.
+            // White space whose written form differs because of folding gets an empty range.
             _ if c.is_whitespace() && first != Some(c) => 0,
             (_, first) => first.map_or(0, char::len_utf8),
         };

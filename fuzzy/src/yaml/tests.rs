@@ -11,7 +11,7 @@ fn scalar_of(node: &Node) -> &Scalar {
     }
 }
 
-/// Covers all styles of writing a rule, with the expected positions of its words.
+/// Tests all styles of writing a rule, with the expected positions of its words.
 #[test]
 fn positions_in_a_scalar_are_found_in_every_style() {
     for text in [

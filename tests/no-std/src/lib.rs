@@ -51,7 +51,7 @@ pub fn engine() -> Result<Engine, Findings> {
     )
 }
 
-/// One evaluation in the caller's scratch memory, as in a control loop.
+/// Returns the risk for a margin, evaluated in the caller's scratch memory as in a control loop.
 ///
 /// # Errors
 /// Never: the model has one input and one output.
@@ -62,7 +62,7 @@ pub fn risk(engine: &Engine, scratch: &mut Scratch, margin: f64) -> Result<Outco
     Ok(outcome)
 }
 
-/// The risk over the whole range, as a replacement for the engine.
+/// Returns a decision map of the risk over the whole range, which can be used instead of the engine.
 pub fn map(engine: &Engine) -> Option<DecisionMap> {
     let grid = Grid::new(engine, 51).ok()?;
     DecisionMap::new(engine, grid, 0).ok()

@@ -13,14 +13,14 @@ fn read(bytes: &[u8]) -> Option<Flight> {
     }
 }
 
-/// Any bytes are read as a flight or rejected with an error. The format is detected from the content.
+/// Checks that any bytes are read as a flight or rejected with an error. The format is detected from the content.
 pub fn flight_log(bytes: &[u8]) {
     if let Some(flight) = read(bytes) {
         check(&flight, bytes);
     }
 }
 
-/// Invariants of every flight, however damaged its log is.
+/// Asserts the invariants of every flight, however damaged its log is.
 pub fn check(flight: &Flight, log: &[u8]) {
     let report = &flight.report;
     assert!(report.skipped_bytes <= report.bytes);
@@ -57,7 +57,8 @@ pub fn check(flight: &Flight, log: &[u8]) {
     is_read_back(flight);
 }
 
-/// Any flight written as CSV is read back with the same samples, and written again as the same lines.
+/// Checks that any flight written as CSV is read back with the same samples, and that writing it again gives the same
+/// lines.
 pub fn csv(bytes: &[u8]) {
     if let Some(flight) = read(bytes) {
         is_read_back(&flight);
@@ -119,7 +120,7 @@ fn assert_same_lines(one: &[u8], other: &[u8], flicker: bool) {
     assert_eq!(lines(other).count(), lines(one).count());
 }
 
-/// The outputs for any flight: text that is safe on a terminal, documents that are JSON, pages that are markup.
+/// Checks the outputs for any flight: text is safe on a terminal, documents are JSON, and pages are markup.
 pub fn report(bytes: &[u8]) {
     let Some(flight) = read(bytes) else {
         return;

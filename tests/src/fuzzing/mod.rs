@@ -33,7 +33,7 @@ pub struct Target {
     pub share: u64,
 }
 
-/// All targets. Plans for the C library are not among them: `tests/c/damage.c` damages these.
+/// All targets. Plans for the C library are not included, because `tests/c/damage.c` tests damaged plans.
 pub const TARGETS: [Target; 8] = [
     Target {
         name: "flight_log",
@@ -99,7 +99,7 @@ fn assert_harmless(text: &str) {
     }
 }
 
-/// Returns the text without escape sequences that end with one of these letters.
+/// Asserts that a text is safe on a terminal: it contains no control characters except line ends and tabs.
 fn without(ends: &str, text: &str) -> String {
     let mut parts = text.split("\u{1b}[");
     let mut plain = parts.next().unwrap_or_default().to_owned();

@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 
-/// Numbers that often break readers of text.
+/// Numbers that often cause errors in parsers of text.
 const NUMBERS: [&str; 12] = [
     "0",
     "-1",
@@ -18,7 +18,7 @@ const NUMBERS: [&str; 12] = [
     "0.1",
 ];
 
-/// A random byte; small numbers and extremes are more frequent, because they often break lengths and counts.
+/// A random byte; small numbers and extremes are more frequent, because they often cause errors in lengths and counts.
 pub fn byte(random: &mut Rng) -> u8 {
     match random.u8(..4) {
         0 => *random

@@ -1,4 +1,4 @@
-//! Rules, rule sets and profiles from untrusted texts.
+//! Fuzz targets for untrusted rules, rule sets and profiles.
 
 use flagred::monitor::{Craft, Monitor, Sample};
 use flagred_cli::fuzzing::{Profile, checked};
@@ -8,8 +8,8 @@ use fuzzy::Engine;
 use super::assert_harmless;
 use crate::board::{findings, reported};
 
-/// Checks that any text in a format of another program gives either findings located inside the text, or a model. If a
-/// format supports the model, the text written in this format can be read again.
+/// Checks that any text, read in the format of another program, gives either findings located inside the text, or a
+/// model. If a format supports the model, the text written in this format can be read again.
 pub fn other_programs(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else {
         return;
@@ -39,7 +39,8 @@ pub fn other_programs(bytes: &[u8]) {
 /// The separator between a profile and its rule set.
 pub(super) const SEPARATOR: &str = "\n---\n";
 
-/// Any text gives a rule that prints and reads back as itself, or an error located inside the text.
+/// Checks that any text gives a rule that can be printed and parsed again unchanged, or an error located inside the
+/// text.
 pub fn rule(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else {
         return;
@@ -50,8 +51,9 @@ pub fn rule(bytes: &[u8]) {
     }
 }
 
-/// Checks that any text gives either findings located inside the text, or a rule set. The rule set must be the same
-/// after it is saved and loaded, compile, and be analysed without a panic. Drawn findings must be safe on a terminal.
+/// Checks that any text gives either findings located inside the text, or a rule set. The rule set must remain the
+/// same when it is saved and loaded, and it must be possible to compile and analyse it without a panic. Findings
+/// printed with their source lines must be safe on a terminal.
 pub fn rule_set(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else {
         return;

@@ -70,7 +70,7 @@ pub fn links() -> Vec<Vec<u8>> {
         })
         .collect();
     let others = [
-        // Another vehicle, from this vehicle's address and from its own.
+        // Packets of other vehicles, sent from this vehicle's address and from another address.
         encode(0, 10, 1, &beat(2, 1, 128)),
         encode(0, 10, 3, &commands(2, 5)),
         encode(2, 10, 1, &beat(3, 1, 0)),
@@ -78,13 +78,13 @@ pub fn links() -> Vec<Vec<u8>> {
         // Parameters of another component and of an impostor.
         encode(0, 1, 2, &parameter(154, "MOT_PWM_MIN", 1900.0)),
         encode(3, 1, 2, &parameter(1, "SERVO1_FUNCTION", f32::NAN)),
-        // A text, another watch, and any bytes.
+        // A status text, packets of another watch, and arbitrary bytes.
         encode(4, 1, 4, b"\x01\x01\x02WARN \x1b[2J"),
         encode(4, 1, 1, &[1, 191, 9, 0, 0, 0xf1, 18, 8, 0, 4, 3]),
         encode(5, 1, 5, b"\x01\xbf\0\0\0\0\0\0\x80\x3fFR_RISK"),
         encode(6, 31, 0, b"\xfe\x09\0\x01\x01\0\xfd\xff\0\0"),
     ];
-    // The vehicle itself, which reboots.
+    // Packets of the vehicle itself, which reboots.
     let itself = [
         encode(0, 10, 3, &commands(1, 0)),
         encode(0, 10, 3, &commands(1, 1)),
@@ -140,7 +140,7 @@ pub fn other_programs() -> Vec<Vec<u8>> {
         let text = String::from_utf8(bytes).unwrap();
         fuzzy::yaml::parse(&text).unwrap().model
     });
-    // A rule set is skipped in a format that lacks the shape of one of its terms.
+    // A rule set is skipped for any format that lacks the shape of one of its terms.
     let written = models.flat_map(|model| {
         flagred_interchange::Format::ALL.map(|format| {
             let written =

@@ -99,7 +99,7 @@ struct Link {
 }
 
 impl Link {
-    /// Creates a link with a hovering quadrotor that is followed.
+    /// Creates a link with a hovering quadrotor that the watch follows.
     fn new() -> Link {
         let mut link = Link {
             watch: Watch::new(SHIPPED.estimator()),

@@ -39,7 +39,7 @@ impl Averages {
 #[derive(Clone, Default)]
 pub struct Balance {
     lately: Averages,
-    /// The trims, which are kept over a gap.
+    /// The trims, which are kept across a gap.
     pub trims: Trims,
     load: Averages,
     at_zero_s: Vec<f64>,
@@ -194,7 +194,7 @@ fn weak(shift: &[f64], limit: f64) -> Option<(usize, Option<usize>)> {
     (shift[motor] > limit && explains).then_some((motor, other))
 }
 
-/// The opposite motor; of two, the one that turns in the same direction.
+/// The motor opposite to this one; if there are two, the one that turns in the same direction as this motor.
 fn opposite(factors: &[[f64; 3]], motor: usize) -> Option<usize> {
     let [roll, pitch, yaw] = factors[motor];
     if roll.abs() < 0.1 && pitch.abs() < 0.1 {

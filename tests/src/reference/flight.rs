@@ -74,8 +74,8 @@ pub struct ReferenceResults {
     pub unbalanced: Vec<BalanceFinding>,
 }
 
-/// State that is kept over a gap in the air: the trims and, after an alarm, the last time at which the motors did not
-/// yet work as before the alarm.
+/// State that is kept across a gap in the air: the trims and, after an alarm, the last time at which the motors did
+/// not yet work as before the alarm.
 type AcrossGap = (Trims, Option<f64>);
 
 /// Follows flights with a profile and a rule set; `factors` contains the motors' factors, and is empty if they are

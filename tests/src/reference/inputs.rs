@@ -198,7 +198,8 @@ fn of_weights(statistic: &Statistic, inside: &[(f64, &Observation)]) -> f64 {
     }
 }
 
-/// The age of the middle of a slot, the weight of the slot, and the mean of its values.
+/// A slot of a window: the time of its middle relative to the end of the window, its weight, and the mean of its
+/// values.
 struct Slot {
     t_s: f64,
     weight: f64,
@@ -232,7 +233,7 @@ fn rate(slots: &[Slot]) -> Option<f64> {
     (slots.len() > 1).then(|| (weight * tx - t * x) / (weight * tt - t * t))
 }
 
-/// The value at a percentile, on the line through the points (percentile, mean).
+/// The value at a percentile, interpolated linearly between the points (percentile, mean) of the slots.
 fn percentile(mut slots: Vec<Slot>, percent: f64) -> Option<f64> {
     slots.sort_by(|a, b| a.value.total_cmp(&b.value));
     let all: f64 = slots.iter().map(|slot| slot.weight).sum();

@@ -1,9 +1,10 @@
-//! Defuzzification of a set given by its degree and slope at each point, to about 1e-13 of its range.
+//! Defuzzification of a set whose degree and slope are known at each point. The error is about 1e-13 of its range.
 //!
-//! The range is cut where the set may have a kink or a step: where given functions change their sign. Between the cuts, it is
-//! integrated by Gauss-Legendre rules, on intervals that are halved until nothing changes. Degrees are never negative, so the
-//! sums lose no digits, and 64-bit numbers suffice. A maximum is where the slope, by automatic differentiation, changes its
-//! sign. tests/peer/mpmath.sh computes the same with 80 digits.
+//! The range is cut where the set may have a kink or a step: where the functions in `Set::kinks` change their
+//! sign. Between the cuts, it is integrated by Gauss-Legendre rules, on intervals that are halved until nothing
+//! changes. Degrees are never negative, so the sums lose no digits, and 64-bit numbers suffice. A maximum is where
+//! the slope, by automatic differentiation, changes its sign. tests/peer/mpmath.sh computes the same with 80
+//! digits.
 
 use std::sync::OnceLock;
 
@@ -214,7 +215,8 @@ fn peaks(set: &Set<'_>, pieces: &[Piece], seen: &[Vec<SlopedPoint>]) -> Vec<(f64
     for (&(from, to), places) in pieces.iter().zip(seen) {
         let (first, last) = (places[0], places[GRID as usize]);
         let (rises, left) = before.map_or((true, first.1), |place| (place.2 > 0.0, place.1));
-        // Whether the set rises to the cut, or steps up at it; and whether it falls after the cut, or steps down at it.
+        // `up`: the set rises to the cut, or steps up at the cut. `down`: the set falls after the cut, or steps down at
+        // the cut.
         let is_step = (left - first.1).abs() > 1e-7 * left.max(first.1);
         let up = if is_step { left < first.1 } else { rises };
         let down = if is_step {

@@ -1,4 +1,4 @@
-//! Numbers for the evaluation of formulas: plain ones, and ones that carry their derivative.
+//! Numbers for the evaluation of formulas: plain numbers, and numbers that include their derivative.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -73,7 +73,7 @@ pub(super) struct Dual {
 }
 
 impl Dual {
-    /// Applies the chain rule: `value` and `derivative` are those of a function at this number.
+    /// Applies the chain rule: `value` and `derivative` are the value and the derivative of a function at this number.
     fn chain(self, value: f64, derivative: f64) -> Self {
         // The derivative of a constant is 0, even if the slope of the function is infinite.
         let slope = if self.slope == 0.0 {

@@ -26,11 +26,12 @@ pub struct Set<'a> {
     pub defuzzifier: Defuzzifier,
     pub degree: &'a dyn Fn(f64) -> f64,
     pub slope: &'a dyn Fn(f64) -> f64,
-    /// Functions that change their sign where the set has a kink or a step: those of single terms, and those of several.
+    /// Functions that change their sign where the set has a kink or a step. The first list is about the implication of
+    /// single terms, the second about the aggregation of several terms.
     pub kinks: [Kinks<'a>; 2],
 }
 
-/// Defuzzifies a [`Set`]; `None` if it is 0 everywhere.
+/// A function that defuzzifies a [`Set`]; it returns `None` if the set is 0 everywhere.
 pub type Defuzzify<'a> = &'a dyn Fn(&Set<'_>) -> Option<f64>;
 
 /// The value of each output at a point; `None` if no rule fires and there is no default. Integrals
@@ -40,7 +41,7 @@ pub fn evaluate(model: &Model, point: &[f64], samples: usize) -> Vec<Option<f64>
     evaluate_with(model, point, &|set| Some(sampled(set, samples)))
 }
 
-/// [`evaluate`] with a defuzzifier of the caller.
+/// Works like [`evaluate`], with a defuzzifier provided by the caller.
 pub fn evaluate_with(model: &Model, point: &[f64], defuzzify: Defuzzify<'_>) -> Vec<Option<f64>> {
     let mut values = Values::new();
     for (variable, x) in model.inputs.iter().zip(point) {

@@ -6,7 +6,7 @@ use super::number::{Dual, Number};
 use super::operators::{ROUNDING, aggregate, and, is_whole};
 use super::shapes::{membership, parameters};
 
-/// Functions of the position in the range of an output.
+/// Functions of the position in the range of an output, which change their sign where a set has a kink or a step.
 pub(super) type Kinks<'a> = Vec<Box<dyn Fn(f64) -> f64 + 'a>>;
 
 /// A term with its strength and its highest degree.
@@ -78,8 +78,9 @@ pub(super) fn aggregated<T: Number>(fired: &[FiredTerm<'_>], operators: Operator
     })
 }
 
-/// The activated degree of a term at `x`. If the strength equals the highest degree of the term except for rounding, it
-/// cuts nothing off. If the drastic operator cuts off a term, its plateaus remain, but a single peak does not.
+/// The activated degree of a term at `x`. A strength that equals the highest degree of the term, except for rounding,
+/// does not cut off any part of the term. If the drastic operator cuts off a term, its plateaus remain, but a single
+/// peak does not.
 fn activate<T: Number>(
     implication: Conjunction,
     (strength, highest, term): FiredTerm<'_>,

@@ -20,7 +20,7 @@ pub struct Interval {
     pub nie_tan: f64,
     /// Begian, Melek and Mendel: the mean of the centroids of both sets.
     pub begian_melek_mendel: f64,
-    /// The area of the lower set, as a share of that of the upper one; 1 for weighted numbers.
+    /// The area of the lower set divided by the area of the upper set; 1 for weighted numbers.
     pub lower_share: f64,
 }
 
@@ -198,7 +198,8 @@ fn centroids(
             parts.push((x, degrees.map(|degree| degree * step)));
         }
     }
-    // First the upper set up to each switch point and the lower one beyond it; then the other way round.
+    // First the sets that equal the upper set up to a switch point and the lower set beyond it; then the other way
+    // round.
     let [mut area, mut moment] = [[0.0; 2]; 2];
     for (x, areas) in &parts {
         for side in 0..2 {

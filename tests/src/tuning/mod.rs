@@ -1,8 +1,8 @@
 //! Voting rules, tuned on flights and validated on held-out vehicles.
 //!
-//! The risk is the mean of the peaks of the consequents, weighted by the degrees of the antecedents times the rule weights: the
-//! centroid over terms of equal width with product and sum. A template defines the inputs, their terms and the rules; peaks,
-//! consequents and weights are tuned.
+//! The risk is the mean of the peaks of the consequents, weighted by the degrees of the antecedents times the rule
+//! weights. This equals the centroid for terms of equal width, with implication by product and aggregation by sum.
+//! A template defines the inputs, their terms and the rules; peaks, consequents and weights are tuned.
 
 mod candidates;
 mod folds;
@@ -20,5 +20,5 @@ pub use search::tune;
 pub use shares::{Share, risks_pct, shares, with_shares};
 pub use votes::Votes;
 
-/// An error while reading or writing files.
+/// An error, for example while reading or writing files.
 pub type Failure = Box<dyn std::error::Error + Send + Sync>;

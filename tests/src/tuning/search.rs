@@ -40,13 +40,13 @@ pub fn tune(template: &Votes, rows: &[&Row]) -> Votes {
     best.map_or_else(|| template.clone(), |(votes, _)| votes)
 }
 
-/// A part of the votes that may change: of an input, or of a term.
+/// A part of the votes of an input that the search changes in one step.
 #[derive(Clone, Copy)]
 enum VotePart {
     Peak,
     Consequent,
     Weight,
-    /// All weights.
+    /// The weights of all terms of the input.
     Weights,
 }
 
@@ -104,7 +104,7 @@ fn descend(mut votes: Votes, problem: &Problem, seed: u64) -> (Votes, f64) {
     (votes, best)
 }
 
-/// The sums of all inputs but one, at each row.
+/// The sums over all inputs but one, at each row.
 fn total(sums: &[Vec<WeightedSum>], without: usize) -> Vec<WeightedSum> {
     let mut total = vec![WeightedSum::default(); sums.first().map_or(0, Vec::len)];
     for (_, sums) in sums.iter().enumerate().filter(|(i, _)| *i != without) {

@@ -18,7 +18,7 @@ pub struct Votes {
     model: Model,
     /// The voting inputs.
     pub(super) inputs: Vec<Input>,
-    /// The common condition of all votes: inputs and terms.
+    /// The common condition of all votes, as pairs of an input and a term.
     given: Vec<(usize, usize)>,
     written: Vec<FixedRule>,
     /// The peaks of the output's terms.
@@ -96,8 +96,8 @@ impl Input {
     }
 
     /// Whether the peaks rise, at least one vote has a weight, and the risk never falls as the input rises, whatever
-    /// the other votes are. For the latter, from each term to the next, the pull of the vote towards the highest
-    /// consequent must not decrease, and its pull towards the lowest consequent must not increase.
+    /// the other votes are. The last condition is met if, from each term to the next, the pull of the vote towards
+    /// the highest consequent does not decrease, and its pull towards the lowest consequent does not increase.
     pub(super) fn is_sound(&self, consequents: &[f64]) -> bool {
         let low = consequents.iter().copied().fold(f64::INFINITY, f64::min);
         let high = consequents
@@ -281,7 +281,7 @@ impl Votes {
     }
 }
 
-/// The propositions of a conjunction as inputs and terms.
+/// The propositions of a conjunction, each as the indices of its input and its term.
 fn propositions(model: &Model, condition: &Condition) -> Option<Vec<(usize, usize)>> {
     let find = |proposition: &Proposition| {
         let name = &proposition.variable.text;

@@ -1,5 +1,5 @@
-//! A stand-in for the autopilot that runs exported scripts: Lua 5.3 with 32-bit floats and integers, and with stricter limits of
-//! local variables and upvalues than ArduPilot's Lua.
+//! A stand-in for the autopilot that runs exported scripts: Lua 5.3 with 32-bit floats and integers, and with stricter
+//! limits on local variables and upvalues than in ArduPilot's Lua.
 
 use std::{
     fmt::Write as _,
@@ -94,7 +94,7 @@ fn autopilot() -> Command {
 pub(super) struct Vehicle {
     /// The range of the motors in us.
     pub(super) pwm: (f64, f64),
-    /// The effective range, as parts of the range.
+    /// The ends of the effective range, as fractions of the range.
     pub(super) spin: (f64, f64),
     /// FRAME_CLASS and FRAME_TYPE.
     pub(super) frame: (i64, i64),
@@ -171,7 +171,7 @@ pub(super) fn records(flight: &Flight) -> Vec<Record> {
     rows.collect()
 }
 
-/// The output at a record: the index of the record, risk and elevated risk in %, and level.
+/// The output for a record: the index of the record, risk and elevated risk in %, and level.
 pub(super) type RecordOutput = (usize, f64, f64, Level);
 
 /// The output of a run of the script.

@@ -146,7 +146,7 @@ pub(crate) fn doubles(geometry: &[Factors], flight: &[Moment]) -> Vec<f64> {
     doubles
 }
 
-/// The output of a program for doubles as its input.
+/// The output of a program that reads doubles as its input.
 pub(crate) fn written(mut program: Command, doubles: &[f64]) -> Vec<String> {
     let mut child = program
         .stdin(Stdio::piped())

@@ -78,8 +78,8 @@ fn differ(expected: &[RecordOutput], found: &[RecordOutput], what: &str) -> (f64
             expected.0
         );
         let difference = (expected.1 - found.1).abs();
-        // A sample that is exactly as old as a window is inside for one clock and outside for the other; one such
-        // difference is allowed.
+        // A sample that is exactly as old as the window is long may be inside the window for one clock and
+        // outside for the other. One such difference is allowed.
         if difference > TOLERANCE_PCT && difference < 1.0 && at_edge == 0 {
             at_edge += 1;
         } else {
@@ -130,8 +130,9 @@ fn the_script_agrees_with_the_monitor_on_every_flight() {
     }
 }
 
-/// Three flights with all events, 25 times a second: a turn, gusts, a motor that weakens and another that compensates
-/// for it; a heavy load; two motors that change their shares; a fall.
+/// Three flights with all events, sampled 25 times a second. The first has a turn, gusts, and a motor that weakens
+/// while another compensates for it; the second has a heavy load; in the third, the commands of two motors shift in
+/// opposite directions, and the vehicle falls at the end.
 fn eventful(vehicle: &Vehicle) -> Vec<Record> {
     let mut random = fastrand::Rng::with_seed(7);
     let mut records = Vec::new();

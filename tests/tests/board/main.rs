@@ -1,5 +1,5 @@
-//! The results of on-board monitors are bit for bit those of the monitor: with a plan in borrowed memory, with exported Rust
-//! and with exported C, over grids of inputs and over every flight.
+//! The results of on-board monitors are bitwise equal to those of the monitor: with a plan in borrowed memory, with
+//! exported Rust and with exported C, over grids of inputs and over every flight.
 
 mod autopilot;
 mod c;
@@ -87,7 +87,7 @@ fn on_board(plan: &Plan<'_>, geometry: &[Factors], flight: &[Moment]) -> Vec<Str
     })
 }
 
-/// Shows only the first difference: a whole flight is too long to print.
+/// Asserts that two outputs are equal. Shows only the first difference, because a whole flight is too long to print.
 fn assert_same(expected: &[String], found: &[String], what: &str) {
     assert_eq!(expected.len(), found.len(), "{what}");
     for (i, (expected, found)) in expected.iter().zip(found).enumerate() {
@@ -95,7 +95,7 @@ fn assert_same(expected: &[String], found: &[String], what: &str) {
     }
 }
 
-/// The number of points on each axis of a grid that is dense and fast enough.
+/// The number of points on each axis of a grid, chosen so that the grid is dense but the test is fast enough.
 fn along(estimator: &Estimator) -> usize {
     match estimator.profile().inputs.len() {
         0..=2 => 203,
@@ -338,8 +338,8 @@ fn a_profile_without_motors_is_the_same_in_borrowed_memory_and_in_c() {
     );
 }
 
-/// Asserts that the results of a plan and of its export to C are bit for bit those of the monitor. Returns the kinds of
-/// findings.
+/// Asserts that the results of a plan and of its export to C are bitwise equal to those of the monitor. Returns the
+/// kinds of findings.
 fn same_lent_and_in_c((estimator, file): (Estimator, String)) -> BTreeSet<String> {
     let signals = estimator.profile().signals();
     let plan = estimator.plan().unwrap();

@@ -1,4 +1,5 @@
-//! Rule sets without a profile, in borrowed memory and exported to Rust and C: the outcomes are bit for bit those of the engine.
+//! Rule sets without a profile, in borrowed memory and exported to Rust and C: the outcomes are bitwise equal to those
+//! of the engine.
 
 use std::path::{Path, PathBuf};
 

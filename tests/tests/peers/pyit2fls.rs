@@ -119,7 +119,7 @@ fn interval_rule_set(seed: u64) -> String {
     let engine = Engine::new(&model(&text)).unwrap();
     let points: Vec<[f64; 4]> = (0..5)
         .map(|_| {
-            // Near the peaks of terms, so that a lower firing strength is above 0.
+            // The points are near the peaks of terms, so that a lower firing strength is above 0.
             let [x, z] = [&a, &b].map(|terms| {
                 let peak = terms[rng.usize(0..3)][0][1];
                 (peak + 0.4 * (rng.f64() - 0.5)).clamp(0.0, 10.0)

@@ -64,7 +64,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     oxictl(system, inputs, output, &rules, &rows)
 }
 
-/// The variables and rules in the subset of fuzzylite's language that the example writes.
+/// Parses the variables and rules of a file in the subset of fuzzylite's language that the example `peers` writes.
 fn read(text: &str) -> Result<(Vec<Variable>, Vec<ParsedRule>), Box<dyn std::error::Error>> {
     let (mut variables, mut rules) = (Vec::<Variable>::new(), Vec::new());
     for line in text.lines() {

@@ -170,7 +170,8 @@ macro_rules! copy {
                 &raw mut plan.propositions.count,
             ];
             let Arrays { kept, mut pieces } = arrays;
-            // The numbers at the front of the plan are listed several times, so that they are damaged often.
+            // The numbers at the front of the plan are listed several times, so that they are chosen for damage more
+            // often.
             for _ in 0..pieces.len() / 4 {
                 let words = 6 * size_of::<u32>();
                 pieces.push(Piece((&raw mut plan.rules.and).cast(), words));

@@ -1,8 +1,9 @@
-//! `flagred-web-bindgen MODULE FOLDER NAME` processes a compiled module: it writes the module for the web, and
-//! JavaScript and type declarations for it.
+//! `flagred-web-bindgen MODULE FOLDER NAME` processes a compiled WebAssembly module: it writes the module in the
+//! form that web pages load, together with JavaScript and type declarations.
 //!
-//! The program `wasm-bindgen --target web` does the same, but must have the version with which the module was
-//! compiled. Here, Cargo.lock ensures the right version, and nothing needs to be installed.
+//! The program `wasm-bindgen --target web` does the same, but its version must match the version of
+//! `wasm-bindgen` with which the module was compiled. Here, Cargo.lock ensures the right version, and nothing
+//! needs to be installed.
 
 use std::{env, process::ExitCode};
 

@@ -59,7 +59,8 @@ impl Assessment {
         vec![start_s, end_s]
     }
 
-    /// A part of the report as HTML, for a stretch of time or for all of it; empty if there is nothing to show.
+    /// A part of the report as HTML, for the given stretch of time, or for the whole time that the report shows; empty
+    /// if there is nothing to show.
     pub fn part(
         &self,
         name: &str,

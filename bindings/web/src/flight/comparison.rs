@@ -23,7 +23,7 @@ impl Comparison {
         Comparison::default()
     }
 
-    /// Adds a flight, which is assessed with the profile of the first one.
+    /// Adds a flight. It is assessed with the profile of the first flight.
     pub fn add(&mut self, assessment: &Assessment) -> Result<(), JsError> {
         let added = Assessment {
             subject: Rc::clone(&assessment.subject),
@@ -55,7 +55,8 @@ impl Comparison {
         self.0.first().map(page).unwrap_or_default()
     }
 
-    /// The body of the page of `html`, for a stretch of time since the start of each flight, or for all of it.
+    /// The body of the HTML page that `html` returns, for a stretch of time since the start of each flight, or for the
+    /// whole flights.
     pub fn part(&self, start_s: Option<f64>, end_s: Option<f64>) -> String {
         let stretch = start_s.zip(end_s);
         let stretch = stretch.map(|(start_s, end_s)| Stretch { start_s, end_s });

@@ -41,7 +41,7 @@ pub struct Flight {
 
 #[wasm_bindgen]
 impl Flight {
-    /// Reads a log from front to back, plain or gzipped. `read` takes an offset and a length in bytes and returns a
+    /// Reads a log, plain or gzipped, from front to back. `read` takes an offset and a length in bytes and returns a
     /// `Uint8Array`, which is empty at the end. Signals that do not come from the motors are kept only if they are in
     /// `signals`; without `signals`, all are kept.
     #[wasm_bindgen(constructor)]

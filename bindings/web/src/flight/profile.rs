@@ -1,4 +1,4 @@
-//! Profiles: shipped ones and texts, optionally with other thresholds.
+//! Profiles that are shipped or given as text, optionally with changed thresholds.
 
 use std::{path::Path, rc::Rc};
 
@@ -16,7 +16,7 @@ use crate::failure::failure;
 /// A compiled profile and rule set.
 #[wasm_bindgen]
 pub struct Profile {
-    /// The name in findings.
+    /// The name by which findings refer to the text.
     name: String,
     pub(super) loaded: Rc<Loaded>,
     /// The text of a rule set that is used instead of the one that the profile names.
@@ -66,8 +66,8 @@ impl Profile {
         self.loaded.profile.text().to_owned()
     }
 
-    /// The warnings about the profile, with the lines of its text that they refer to; empty if there are none. They do
-    /// not prevent its use.
+    /// The warnings about the profile, with the lines of its text that they refer to; empty if there are none. A
+    /// profile with warnings can still be used.
     #[wasm_bindgen(getter)]
     pub fn warnings(&self) -> String {
         drawn(

@@ -17,8 +17,8 @@ struct Conversion {
     notes: Vec<String>,
 }
 
-/// Converts a rule set of another program to YAML, like `flagred import`: a JSON object with `text`, `format` and
-/// `notes`. YAML is returned unchanged.
+/// Converts a rule set from the format of another program to YAML, like `flagred import`. Returns a JSON object
+/// with `text`, `format` and `notes`. YAML is returned unchanged.
 #[wasm_bindgen(js_name = importRules)]
 pub fn import(text: &str, lossy: bool) -> Result<String, JsError> {
     let Some(format) = Format::of(text) else {

@@ -173,8 +173,8 @@ impl RuleSet {
         json(&names.zip(&outcomes).map(value).collect::<Vec<_>>())
     }
 
-    /// The outputs of many rows: `columns` contains the columns of the inputs one after another, and the result the
-    /// columns of the outputs. NaN is unknown.
+    /// The outputs of many rows. `columns` contains the columns of the inputs one after another; the result
+    /// contains the columns of the outputs in the same way. NaN means unknown.
     #[wasm_bindgen(js_name = evaluateColumns)]
     pub fn evaluate_columns(&self, columns: &[f64]) -> Result<Vec<f64>, JsError> {
         let inputs = self.engine.input_names().len();

@@ -267,7 +267,7 @@ struct Handle {
 }
 
 impl<'a> DrawnVariable<'a> {
-    /// Creates a variable to draw. `output` is `None` for an input. For an output, it contains whether the terms are
+    /// Creates a variable to draw. `output` is `None` for an input; for an output, it is whether the terms are
     /// numbers.
     fn new(
         document: &Document,

@@ -1,4 +1,4 @@
-//! All rules with the fuzzy sets that they read and conclude, for the rule viewer.
+//! All rules with the fuzzy sets of their propositions and consequents, for the rule viewer.
 
 use fuzzy::{
     Model,

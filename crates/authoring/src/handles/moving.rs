@@ -69,7 +69,7 @@ impl Place<'_> {
         Ok(terms)
     }
 
-    /// Returns the edits if the edited text has the wanted meaning and no other change.
+    /// Returns the edits if the edited text has exactly the intended meaning.
     pub(super) fn verified(
         &self,
         document: &Document,

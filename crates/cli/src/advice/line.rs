@@ -282,7 +282,7 @@ pub(super) fn has_word(words: &str, word: &str) -> bool {
     words.split(' ').any(|other| other == word)
 }
 
-/// Quotes a word for the shell, if it needs that.
+/// Quotes a word for the shell if necessary.
 pub(super) fn in_shell(word: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "._-/=:+@%,".contains(c);
     match word.chars().all(is_plain) && !word.is_empty() {

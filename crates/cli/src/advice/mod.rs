@@ -20,7 +20,8 @@ use crate::{
     path::{RULES, has_ending},
 };
 
-/// Adds advice to an error of clap, if there is any. It replaces clap's suggestions of similar names.
+/// Adds advice to an error from clap, if there is advice for it. The advice replaces clap's suggestions of similar
+/// names.
 pub(crate) fn improve(error: &mut clap::Error, program: &Command, words: &[OsString]) {
     let words: Vec<String> = words
         .iter()
@@ -35,7 +36,7 @@ pub(crate) fn improve(error: &mut clap::Error, program: &Command, words: &[OsStr
         return;
     }
     for similar in [
-        // clap shows any option that fits in its usage, which distracts from the advice.
+        // The usage that clap shows may contain any option that would fit, which distracts from the advice.
         ContextKind::Usage,
         ContextKind::SuggestedArg,
         ContextKind::SuggestedSubcommand,

@@ -14,9 +14,11 @@ use fuzzy::{
 use super::{BEFORE_S, Cut, FileRows, Plan, Row};
 use crate::{failure::Failure, flights::open_complete};
 
-/// Seconds after take-off in which [`Cut::Ahead`] makes no rows, if the header of the flight lacks the judged time.
+/// The length of the period after take-off for which [`Cut::Ahead`] creates no rows, in seconds. It applies if the
+/// header of the flight does not contain the judged time.
 const AFTER_TAKE_OFF_S: f64 = 2.0;
-/// Seconds before landing in which [`Cut::Ahead`] makes no rows, if the header of the flight lacks the judged time.
+/// The length of the period before landing for which [`Cut::Ahead`] creates no rows, in seconds. It applies if the
+/// header of the flight does not contain the judged time.
 const BEFORE_END_S: f64 = 1.0;
 
 pub(super) fn rows(log: &str, plan: &Plan) -> Result<FileRows, Failure> {

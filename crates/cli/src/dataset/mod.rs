@@ -70,7 +70,8 @@ enum Cut {
     Ahead { horizon_s: f64, step_s: f64 },
 }
 
-/// Periods before a row of [`Cut::Ahead`], in seconds; the largest attitude error in each of them is reported.
+/// The lengths of periods that end at a row of [`Cut::Ahead`], in seconds. The largest attitude error in each period is
+/// reported.
 const BEFORE_S: [f64; 2] = [5.0, 10.0];
 
 /// One row of the data set.
@@ -82,7 +83,7 @@ struct Row {
     from_s: Option<f64>,
     to_s: Option<f64>,
     inputs: Vec<f64>,
-    /// For [`Cut::Ahead`]: the largest error in each of the periods [`BEFORE_S`]; `None` is unknown.
+    /// For [`Cut::Ahead`]: the largest error in each of the periods [`BEFORE_S`]; `None` if it is unknown.
     errors_before_deg: Vec<Option<f64>>,
     att_rmse_deg: f64,
     risk_pct: f64,

@@ -1,4 +1,4 @@
-//! Errors of outputs against measured values.
+//! Errors of the computed outputs compared with measured values.
 
 use fuzzy::drawing::short;
 

@@ -88,7 +88,7 @@ struct Plan {
     inputs: Vec<usize>,
     with: Vec<ExplanationColumn>,
     suffix: String,
-    /// Whether each output has an interval, whose ends have columns of their own.
+    /// For each output, whether it has an interval. The ends of the interval are written to separate columns.
     intervals: Vec<bool>,
     /// For each input, its half-width; empty if all inputs are numbers.
     half_widths: Vec<Option<uncertain::HalfWidth>>,

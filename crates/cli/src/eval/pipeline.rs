@@ -1,5 +1,5 @@
-//! One thread reads blocks of rows, several evaluate them, and the calling thread writes them in order. Memory does not grow
-//! with the table.
+//! One thread reads blocks of rows, several threads evaluate them, and the calling thread writes them in order. Memory
+//! does not grow with the table.
 
 use std::{
     io::{self, Write},
@@ -17,7 +17,7 @@ use crate::{
     table::{self, Reader},
 };
 
-/// Blocks queued for each thread.
+/// The maximum number of blocks that are queued for each thread.
 const WAITING: usize = 2;
 
 /// A block after evaluation.

@@ -45,7 +45,7 @@ impl Block {
     }
 }
 
-/// Evaluates blocks, with its own memory.
+/// Evaluates blocks of rows in its own memory.
 pub(super) struct Evaluator<'p> {
     plan: &'p Plan,
     /// Set if outputs of the rule set keep their previous value.

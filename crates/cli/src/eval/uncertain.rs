@@ -14,9 +14,9 @@ use crate::{
 /// The half-width of an input: the largest error of its values.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum HalfWidth {
-    /// The same in all rows.
+    /// The same number in all rows.
     Number(f64),
-    /// In this column.
+    /// The number in this column of each row.
     Column(usize),
 }
 
@@ -87,7 +87,7 @@ pub(super) fn in_row(
     }
 }
 
-/// Evaluates a row of values with half-widths; `None` if one of them is unknown.
+/// Evaluates a row of values with half-widths; `None` if a value or a half-width is unknown.
 pub(super) fn enclose(
     enclosure: &Enclosure<'_>,
     inputs: impl Iterator<Item = (f64, f64)>,

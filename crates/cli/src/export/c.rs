@@ -1,5 +1,5 @@
-//! Writes a plan or a rule set as C. Numbers read back bit for bit. The numeric codes of enumerations are those of
-//! `flagred-c`.
+//! Writes a plan or a rule set as C. Each number is written so that exactly the same bits are read back. The
+//! numeric codes of enumerations are the same as in `flagred-c`.
 
 use std::fmt::Write;
 

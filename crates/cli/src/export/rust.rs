@@ -1,7 +1,7 @@
 //! A plan or a rule set as Rust.
 //!
-//! The debug form of plain data is a valid Rust expression once the names of enumerations are added and the constants `inf` and
-//! `NaN` are defined. Numbers read back bit for bit.
+//! The debug form of plain data is a valid Rust expression once the names of enumerations are added and the
+//! constants `inf` and `NaN` are defined. Each number is written so that exactly the same bits are read back.
 
 use std::fmt::{Debug, Write};
 

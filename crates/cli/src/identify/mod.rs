@@ -225,7 +225,7 @@ fn settings(arguments: &Arguments) -> Identification {
     settings
 }
 
-/// The columns of a table that may be inputs, and those without a number.
+/// Returns the columns of a table that may be inputs, and the columns without a number.
 fn columns(arguments: &Arguments, table: &Table) -> Result<(Vec<String>, Vec<String>), Failure> {
     let has = |name: &str| table.header.column(name).is_some();
     let mut joined = arguments.input.iter().chain(&arguments.ignore);

@@ -43,7 +43,7 @@ pub(crate) struct Document<'a> {
     signals: Vec<Signal<'a>>,
     /// The flight modes, each with the time at which it was entered.
     modes: &'a [Event],
-    /// The texts of the autopilot.
+    /// The text messages of the autopilot.
     messages: &'a [Event],
     /// The keys and values in the header of a flight CSV.
     header: &'a [(String, String)],
@@ -55,9 +55,9 @@ pub(crate) struct Document<'a> {
 
 #[derive(Serialize, JsonSchema)]
 struct Clock<'a> {
-    /// The first time of the log, in seconds.
+    /// The first timestamp of the log, in seconds.
     first_s: Option<f64>,
-    /// The last time of the log, in seconds.
+    /// The last timestamp of the log, in seconds.
     last_s: Option<f64>,
     /// UTC at time 0, in seconds since 1970.
     utc_at_zero_s: Option<f64>,

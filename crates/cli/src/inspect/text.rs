@@ -41,7 +41,7 @@ fn line(out: &mut impl Write, key: &str, value: &str) -> io::Result<()> {
     writeln!(out, "  {key:<11}{}", visible(value))
 }
 
-/// Writes lines, the first one after the key; writes nothing if there are no lines.
+/// Writes a key and lines; the first line follows the key. Writes nothing if there are no lines.
 fn lines(
     out: &mut impl Write,
     key: &str,
@@ -135,7 +135,8 @@ fn range(range: Option<&Range>, of: &str) -> String {
     format!("{low} to {high}{unit}{of} ({})", range.source)
 }
 
-/// A number with at most 6 decimals, without trailing zeros: parameters have single precision.
+/// A number with at most 6 decimals, without trailing zeros. Parameters have only single precision, so more decimals
+/// would be meaningless.
 fn short(value: f64) -> String {
     let text = format!("{value:.6}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()

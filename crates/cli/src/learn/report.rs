@@ -198,7 +198,8 @@ struct Rules {
     learned: usize,
     /// The number of rules of the original rule set that were kept.
     kept: usize,
-    /// The number of learned rules that were completed from their neighbours, without rows.
+    /// The number of learned rules for combinations of terms without rows; each was derived from the nearest
+    /// combination with rows.
     completed: u64,
 }
 
@@ -214,7 +215,7 @@ struct MissingDocument {
 struct Monotone<'a> {
     /// Whether the output follows `--rising` and `--falling`.
     holds: bool,
-    /// The number of rules whose consequent was changed to satisfy them.
+    /// The number of rules whose consequent was changed so that the output follows `--rising` and `--falling`.
     moved: u64,
     /// The worst counterexample of each claim.
     counterexamples: &'a [Counterexample],

@@ -95,7 +95,7 @@ enum Phase {
 }
 
 impl Server {
-    /// Returns the answer to a request; the protocol allows some only in certain phases.
+    /// Returns the answer to a request. The protocol allows some requests only in certain phases.
     fn respond(&mut self, request: Request) -> Response {
         let error = |code: ErrorCode, why: &str| {
             Response::new_err(request.id.clone(), code as i32, why.to_owned())

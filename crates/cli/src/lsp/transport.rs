@@ -1,4 +1,5 @@
-//! Messages on standard input: a header with the length, then JSON. The length is bounded, so that a wrong one cannot exhaust memory.
+//! Messages on standard input: a header with the length, then JSON. The length is bounded, so that a wrong length
+//! cannot exhaust memory.
 
 use std::io::{self, BufRead, Read};
 

@@ -12,7 +12,8 @@ use crate::{
     table::{Cell, Table},
 };
 
-/// Smaller differences, relative to the range of the output, are ignored: another program may write fewer digits.
+/// Differences below this value, relative to the range of the output, are ignored, because another program may write
+/// fewer digits.
 const NEGLIGIBLE: f64 = 1e-9;
 
 /// The row with the largest difference.
@@ -34,7 +35,7 @@ pub(super) fn against(
     let header = &table.header;
     let columns = arguments.layout.columns(&names, header);
     let columns = columns.map_err(|failure| match header.names.len() {
-        // A snapshot has at least one input and one output.
+        // A table to compare with has a column for at least one input and one output.
         1 if header.other_delimiter().is_none() => {
             failure.help("`map --csv` writes such a table; that of `map --values` is for people")
         }

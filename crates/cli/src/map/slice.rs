@@ -105,7 +105,7 @@ pub(super) fn axes(arguments: &Arguments, evaluated: &MapSource) -> Result<Axes,
     })
 }
 
-/// Cuts the requested slice, and returns notes about choices that the arguments left open.
+/// Returns the requested slice, and notes about the choices that the arguments left open.
 pub(super) fn cut(
     arguments: &Arguments,
     evaluated: &MapSource,

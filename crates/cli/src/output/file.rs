@@ -187,7 +187,8 @@ impl Output {
         self.write_with(|out| out.write_all(text.as_bytes()))
     }
 
-    /// Writes the output of `fill`. A file is complete or not written: it is written to the same folder, synced, then renamed.
+    /// Writes the output of `fill`. A file is written completely or not at all: a temporary file in the same folder is
+    /// written, synced, and then renamed.
     pub(crate) fn write_with(
         &self,
         fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -221,8 +222,8 @@ impl Output {
     }
 }
 
-/// Writes several texts: files, then devices, then standard output, which may block. If one cannot be written, the
-/// others still are.
+/// Writes several texts: files, then devices, then standard output, which may block. If one of them cannot be
+/// written, the others are still written.
 ///
 /// # Errors
 ///
@@ -294,7 +295,7 @@ fn write_file(
     Ok(())
 }
 
-/// Gives a file the owner and mode of the one that it replaces.
+/// Gives a file the owner and mode of the file that it replaces.
 fn keep(draft: &File, old: &Metadata) -> io::Result<()> {
     #[cfg(unix)]
     {
@@ -311,7 +312,7 @@ fn keep(draft: &File, old: &Metadata) -> io::Result<()> {
     draft.set_permissions(old.permissions())
 }
 
-/// Resolves all symbolic links, also if the target does not exist yet.
+/// Resolves all symbolic links, even if the target does not exist yet.
 fn target(path: &Path) -> io::Result<PathBuf> {
     let mut path = path.to_owned();
     for _ in 0..LINKS {

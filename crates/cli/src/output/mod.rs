@@ -116,7 +116,7 @@ pub(crate) fn is_terminal(output: Option<&Output>) -> bool {
     output.is_none_or(Output::is_stdout) && std::io::stdout().is_terminal()
 }
 
-/// Prints a note on standard error, in one line.
+/// Prints a note on standard error, on one line.
 pub(crate) fn print_note(note: &str) {
     // If standard error is closed, there is no other way to report that.
     let _ = writeln!(anstream::stderr(), "{}", visible(note));

@@ -93,7 +93,8 @@ fn flat(found: Vec<Value>, all: &mut Vec<Object>) {
     }
 }
 
-/// Merges the keywords of two objects. Those of `first` take precedence; properties and required names of `second` are appended.
+/// Merges the keywords of two objects. The keywords of `first` take precedence; the properties and required names of
+/// `second` are appended.
 fn merged(first: &Object, second: &Object) -> Object {
     let mut all = first.clone();
     for (keyword, value) in second {

@@ -36,7 +36,7 @@ pub(super) struct Content {
 pub(super) enum SaveResult {
     /// The text was saved; this is its tag.
     Yes(String),
-    /// The file was changed meanwhile, by another program.
+    /// The text was not saved, because another program has changed the file in the meantime.
     Changed,
 }
 

@@ -110,7 +110,7 @@ impl<S: Read> Request<S> {
         }
     }
 
-    /// Returns the value of a header; repeated headers are joined to a list.
+    /// Returns the value of a header; repeated headers are joined into a list.
     pub(super) fn header(&self, name: &str) -> Option<String> {
         let named = self.headers.iter().filter(|(other, _)| other == name);
         let values: Vec<&str> = named.map(|(_, value)| value.as_str()).collect();
@@ -229,7 +229,8 @@ impl Write for DeadlineStream<'_> {
     }
 }
 
-/// Answers the request on a connection, and closes it. HEAD is answered as GET without the body.
+/// Answers the request on a connection, and closes it. A HEAD request is answered like a GET request, but without the
+/// body.
 pub(super) fn serve<'a>(
     stream: &TcpStream,
     respond: impl FnOnce(&mut Request<&mut DeadlineStream<'_>>) -> Response<'a>,
@@ -266,7 +267,7 @@ mod tests {
         assert_eq!(request.body(3).unwrap(), "abc");
     }
 
-    /// Two headers with one name form a list, which is not a valid host, origin or length.
+    /// Two headers with the same name form a list, which is not a valid host, origin or length.
     #[test]
     fn a_repeated_header_has_no_single_value() {
         let text = "PUT / HTTP/1.1\r\nContent-Length: 1\r\nContent-Length: 1\r\n\r\na";

@@ -35,8 +35,8 @@ pub(super) struct Server {
     /// The host and port, as a browser names them.
     authority: String,
     token: String,
-    /// A path that redirects to the page once. It is in the browser's command line, which other users can see; the address of
-    /// the page is not.
+    /// A path that redirects to the page once. Other users can see it, because it is in the command line of the
+    /// browser, but they cannot see the address of the page.
     ticket: String,
     is_used: AtomicBool,
     page: Page,

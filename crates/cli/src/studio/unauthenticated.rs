@@ -20,8 +20,8 @@ struct ConnectionQueue {
 }
 
 impl UnauthenticatedConnections {
-    /// Adds a connection, and returns its number. If there are too many, the oldest is closed: a browser sends its request
-    /// immediately.
+    /// Adds a connection, and returns its number. If there are too many connections, the oldest is closed. This does
+    /// not affect a browser, because it sends its request immediately.
     pub(super) fn admit(&self, stream: &TcpStream) -> u64 {
         let mut queue = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         queue.count += 1;

@@ -13,7 +13,7 @@ pub(crate) enum Cell {
     Bad,
 }
 
-/// Texts of other programs for an unknown value.
+/// Texts by which other programs represent an unknown value.
 const UNKNOWN: [&str; 14] = [
     "null",
     "none",

@@ -1,4 +1,4 @@
-//! Columns that are probably shares although the range of their variable is in percent.
+//! Detects columns whose values are probably shares although the range of their variable is in percent.
 
 use fuzzy::model::Variable;
 

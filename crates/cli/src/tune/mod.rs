@@ -136,9 +136,9 @@ struct TuneOutcome {
     rows: usize,
     refused: Vec<String>,
     tuned: TuneResult,
-    /// `None` if not requested or interrupted.
+    /// The cross-validation; `None` if it was not requested or was interrupted.
     validation: Option<Validation>,
-    /// `None` if not requested or interrupted.
+    /// The learning curve; `None` if it was not requested or was interrupted.
     curve: Option<Vec<CurvePoint>>,
     /// Whether the search started from a checkpoint.
     is_resumed: bool,

@@ -221,8 +221,8 @@ pub(crate) struct Document<'a> {
     learning_curve: Option<Vec<CurvePointDocument>>,
     /// The numbers that tuning changed.
     moved: Vec<ChangedNumberDocument<'a>>,
-    /// Constants, as `variable.term`, that are at an end of the range and would reduce the loss
-    /// beyond it.
+    /// Constants, as `variable.term`, that are at an end of the range although values beyond it
+    /// would reduce the loss.
     at_bounds: &'a [String],
 }
 
@@ -279,9 +279,9 @@ struct ChangedNumberDocument<'a> {
     of: &'a str,
     /// The number that moved, such as `peak`.
     name: &'a str,
-    /// The value before.
+    /// The value before tuning.
     before: f64,
-    /// The value after.
+    /// The value after tuning.
     after: f64,
 }
 

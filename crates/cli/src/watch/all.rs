@@ -109,7 +109,7 @@ pub(super) fn run(
     Ok(exit_of(&worst(&all), FailOn::Warn))
 }
 
-/// Receives from a link, in its own thread.
+/// Receives packets from a link, in a separate thread.
 fn listen(
     link: usize,
     name: &str,

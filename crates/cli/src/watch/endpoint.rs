@@ -3,7 +3,7 @@
 
 use std::{fmt, str::FromStr};
 
-/// The default baud rate of a serial port: that of telemetry radios.
+/// The default baud rate of a serial port, which telemetry radios commonly use.
 const BAUD: u32 = 57_600;
 
 /// An address at which a vehicle can be received.

@@ -12,14 +12,15 @@ use super::session::{Event, Session, SessionOutput, Source, VehicleView, may_be_
 
 /// Maximum number of vehicles at a time.
 const MAX_VEHICLES: usize = 1_000;
-/// Maximum number of vehicles in the summary that are no longer received.
+/// Maximum number of vehicles that the summary lists although they are no longer received.
 const MAX_GONE: usize = 10_000;
 /// A sender without evidence that it is a vehicle is dropped after this many seconds of silence.
 const STRAY_S: f64 = 10.0;
 /// A vehicle is dropped after this many seconds of silence. If it is received again, it counts as
 /// new.
 const GONE_S: f64 = 60.0;
-/// Maximum number of stored samples of a flight, in case limits become known later: a minute at 25 Hz, in 0.1 MB.
+/// Maximum number of samples of a flight that are stored in case limits become known later: a minute at 25 Hz, which
+/// takes 0.1 MB.
 const HISTORY: usize = 1_500;
 
 /// The identity of a vehicle. Senders with the same system id count as different vehicles, since every new autopilot

@@ -206,7 +206,8 @@ pub(crate) enum FleetLine<'a> {
         worst: VerdictWord,
         /// The number of vehicles with a summary.
         vehicles: usize,
-        /// The number of heartbeats of vehicles beyond the 1,000 that are followed at a time.
+        /// The number of heartbeats that were ignored because they came from further vehicles while 1,000 vehicles were
+        /// already followed.
         heartbeats_refused: u64,
         /// The number of vehicles that are no longer received and are missing from the summary,
         /// which lists at most 10,000.

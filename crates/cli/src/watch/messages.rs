@@ -15,9 +15,9 @@ use flagred_flightlog::mavlink::{
 
 use fuzzy::drawing::visible;
 
-/// The name of the value with the risk.
+/// The name under which the risk is sent.
 pub(crate) const RISK: &str = "FR_RISK";
-/// The name of the value with the elevated risk.
+/// The name under which the elevated risk is sent.
 pub(crate) const ELEVATED: &str = "FR_ELEV";
 /// The sender's system id until a vehicle is found: 255, which ground stations use.
 pub(crate) const DEFAULT_SYSTEM: u8 = 255;

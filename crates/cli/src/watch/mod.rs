@@ -190,7 +190,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut buffer = vec![0; DATAGRAM];
     let mut out = SessionOutput::default();
     let start = Instant::now();
-    // If nobody reads the output, the watch continues as long as it sends warnings or records.
+    // If nobody reads the output, the watch continues as long as it sends warnings or records packets.
     let is_needed = !arguments.no_send || arguments.record.is_some();
     while !stop.load(Ordering::Relaxed) && (is_needed || !display.printer.is_closed()) {
         let received = port.receive(&mut buffer);

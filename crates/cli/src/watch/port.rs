@@ -10,7 +10,7 @@ use std::{
 use super::endpoint::Endpoint;
 use crate::failure::Failure;
 
-/// How long a call waits for bytes, which is also the interval of all periodic work.
+/// The time for which a call waits for bytes, which is also the interval of all periodic work.
 const WAIT: Duration = Duration::from_millis(20);
 /// The time limit for connecting.
 const CONNECT: Duration = Duration::from_secs(3);

@@ -9,7 +9,7 @@ use std::{
 
 use crate::output;
 
-/// How long the program waits at its end for the last output to be read.
+/// The maximum time that the program waits at its end for the last output to be read.
 const FLUSH_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// Prints pieces of text in their order.

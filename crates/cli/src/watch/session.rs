@@ -1,7 +1,9 @@
-//! Packets in, events and packets out: all of `flagred watch` except sockets, files and the screen.
+//! The core of `flagred watch`: receives packets, and returns events and packets to send. Sockets, files and the
+//! screen are handled elsewhere.
 //!
-//! There are two clocks. The risk is computed over the vehicle's clock, which its motor commands contain. The state of the link
-//! (silence, repeated requests, sending rates) depends on the receiver's clock, which is passed in.
+//! There are two clocks. The risk is computed over the vehicle's clock, which its motor commands contain. The
+//! state of the link (silence, repeated requests, sending rates) depends on the receiver's clock, which is
+//! passed in.
 
 use flagred::{
     estimator::Estimator,
@@ -60,7 +62,7 @@ pub(crate) struct Session<'e> {
     heartbeat_s: Option<f64>,
     /// The worst verdict of the flights so far.
     worst: Verdict,
-    /// The verdict of a part of a flight in which the risk is unknown.
+    /// The verdict for parts of flights in which the risk is unknown, if there are any.
     unknown_part: Option<Verdict>,
     /// Maximum number of stored samples of a flight.
     history: usize,

@@ -1,4 +1,4 @@
-//! `--record`: the received packets, as a telemetry log.
+//! The telemetry log that `--record` writes: the received packets, each with its time.
 
 use std::{
     fs::File,
@@ -9,8 +9,8 @@ use std::{
 
 use crate::{failure::Failure, output};
 
-/// A telemetry log under construction. The time precedes each packet, as 8 bytes with microseconds since 1970, the most
-/// significant byte first.
+/// A telemetry log under construction. Each packet is preceded by its time: the microseconds since 1970 as 8 bytes, the
+/// most significant byte first.
 pub(crate) struct Recording {
     name: String,
     /// `None` after an error.
@@ -36,8 +36,8 @@ impl Recording {
     ///
     /// # Errors
     ///
-    /// If the file cannot be written. The error is a message, and is returned only once. The recording ends with its
-    /// last complete packet.
+    /// If the file cannot be written. The error is a message. It ends the recording, so it is returned only once;
+    /// the file then ends with its last complete packet.
     pub(crate) fn add(&mut self, packet: &[u8]) -> Result<(), String> {
         let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
         let t_us = since_1970.map_or(0, |time| time.as_micros() as u64);
@@ -63,7 +63,7 @@ impl Recording {
 
     fn end(&mut self, error: &io::Error) -> String {
         let reported = format!("cannot record to `{}`: {error}", self.name);
-        // The buffered bytes are dropped.
+        // The buffered bytes are discarded, not written.
         let file = self.file.take().map(|file| file.into_parts().0);
         let is_whole = file.is_some_and(|file| file.set_len(self.written).is_ok());
         match is_whole {

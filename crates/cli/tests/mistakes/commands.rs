@@ -6,7 +6,7 @@ use super::{
     files,
 };
 
-/// The command line, the exit code, and a part of the message.
+/// Each mistake: the command line, its exit code, and a part of its message.
 const MISTAKES: &[(&str, i32, &str)] = &[
     ("fan.yaml", 2, "`flagred check fan.yaml`"),
     ("version", 2, "`flagred --version`"),

@@ -80,7 +80,8 @@ fn rows_outside_a_range_are_clamped_on_request() {
         assert_eq!(code, Some(0), "{errors}");
         let input = "`temperature` is outside its range from 0 to 40 in 1 of 5 rows and clamped to it (first in `rows.csv`, line 3)";
         assert!(errors.contains(input), "{errors}");
-        // Only `learn` clamps and reports values of the output: `tune` and `eval` use such values as they are.
+        // Only `learn` clamps values of the output to the range and reports them; `tune` and `eval` use such values as
+        // they are.
         let output = "`fan` is outside its range from 0 to 100 in 1 of 5 rows and clamped to it (first in `rows.csv`, line 2)";
         assert_eq!(errors.contains(output), command == "learn", "{errors}");
     }

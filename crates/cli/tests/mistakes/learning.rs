@@ -2,7 +2,7 @@
 
 use super::{FAN, assert_advice, common::flagred, files};
 
-/// The command line, the exit code, and a part of the message.
+/// Each mistake: the command line, its exit code, and a part of its message.
 const MISTAKES: &[(&str, i32, &str)] = &[
     (
         "learn fan.yaml header.csv -o out.yaml",

@@ -25,7 +25,7 @@ rules:
   - IF temperature IS hot AND humidity IS wet THEN fan IS fast
 ";
 
-/// A folder with the files of the mistakes.
+/// Creates a folder with the files that the mistaken command lines use.
 fn files() -> tempfile::TempDir {
     let folder = folder(&[
         ("fan.yaml", FAN),

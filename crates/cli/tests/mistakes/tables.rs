@@ -2,7 +2,7 @@
 
 use super::{assert_advice, files};
 
-/// The command line, the exit code, and a part of the message.
+/// Each mistake: the command line, its exit code, and a part of its message.
 const MISTAKES: &[(&str, i32, &str)] = &[
     (
         "explain fan.yaml 24 70",

@@ -1,4 +1,4 @@
-//! Access to the page: only for the user who started it.
+//! Access to the page, which only the user who started the studio has.
 
 use std::{
     fs,
@@ -128,7 +128,8 @@ fn requests_of_others_are_refused() {
     assert_eq!(studio.file().status, 200);
 }
 
-/// The address in the browser's command line redirects to the page once, so that another user who reads it is too late.
+/// The address on the browser's command line redirects to the page only once, so another user who reads the command
+/// line comes too late.
 #[test]
 fn the_address_for_the_browser_works_once() {
     let folder = folder(&[]);
@@ -198,7 +199,7 @@ fn slow_connections_do_not_block_others() {
     );
 }
 
-/// A request ends, however slowly it is sent.
+/// The server ends a refused request after a limited time, however slowly the request is sent.
 #[test]
 fn a_refused_request_is_not_read_for_long() {
     let folder = folder(&[]);

@@ -21,7 +21,7 @@ pub(crate) fn page() -> String {
     )
 }
 
-/// A running studio that serves the page, with additional arguments.
+/// A running `flagred studio` that serves the placeholder page.
 pub(crate) struct Studio {
     child: Child,
     /// The host and port.
@@ -75,7 +75,7 @@ impl Studio {
         Answer::parse(&String::from_utf8(bytes).unwrap())
     }
 
-    /// Requests a path below the token.
+    /// Sends a request for a path below the token.
     pub(crate) fn request(
         &self,
         method: &str,

@@ -191,7 +191,7 @@ fn areas(evaluation: &Evaluation) -> Table {
     }
 }
 
-/// Areas with a row for each group and a column for each estimator; `None` if there is only one group.
+/// A table of areas with a row for each group and a column for each estimator; `None` if there is only one group.
 fn by(
     title: &str,
     evaluation: &Evaluation,
@@ -233,7 +233,7 @@ fn by(
     })
 }
 
-/// The verdicts of the flights of each vehicle.
+/// The table of the verdicts on the flights of each vehicle.
 fn verdicts(evaluation: &Evaluation) -> Option<Table> {
     let mut vehicles: BTreeMap<String, Verdicts> = BTreeMap::new();
     for record in &evaluation.records {
@@ -266,7 +266,7 @@ fn verdicts(evaluation: &Evaluation) -> Option<Table> {
     })
 }
 
-/// A number of things, such as `1 flight` or `2 flights`.
+/// A number with its noun, such as `1 flight` or `2 flights`.
 fn count(number: usize, thing: &str) -> String {
     let plural = if number == 1 { "" } else { "s" };
     format!("{number} {thing}{plural}")

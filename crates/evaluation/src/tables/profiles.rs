@@ -7,7 +7,7 @@ use crate::{
     warnings::Warnings,
 };
 
-/// The alarms of a profile in calm times, and before upsets.
+/// The table of the alarms of a profile in calm times and before upsets.
 pub(super) fn alarms(name: &str, alarms: &Alarms) -> Table {
     let mut rows = vec![
         needless("calm stretches".to_owned(), &alarms.calm),
@@ -100,7 +100,7 @@ fn needless(name: String, of: &NeedlessAlarms) -> Vec<String> {
     ]
 }
 
-/// The quality of the warnings of a profile.
+/// The table of the quality of the warnings of a profile.
 pub(super) fn warnings(
     profile: &ProfileScores,
     all: &Warnings,
@@ -151,7 +151,7 @@ fn warned(kind: String, of: &Warnings) -> Vec<String> {
     ]
 }
 
-/// How often cases in each band of the risk were critical; `None` for scores that are not risks.
+/// The table of how often cases in each band of the risk were critical; `None` for scores that are not risks.
 pub(super) fn reliability(estimator: &ProfileScores) -> Option<Table> {
     let bands = estimator.reliability.as_ref()?.iter();
     let rows = bands.map(|band| {

@@ -79,7 +79,7 @@ fn kind_of_firmware(text: &str) -> Option<VehicleKind> {
         .map(|(_, kind)| *kind)
 }
 
-/// The kind from parameters that only one kind of vehicle has.
+/// The kind of vehicle, from parameters that only vehicles of this kind have.
 fn kind_of_parameters(parameters: &Parameters) -> (VehicleKind, String) {
     const SIGNS: &[(&str, VehicleKind)] = &[
         ("ATC_RAT_RLL_P", VehicleKind::Multirotor),

@@ -143,8 +143,8 @@ pub(super) fn apply_header(
                 return Err(problem(line_of(key), text, help));
             }
         }
-        // A limit that seems to be missing may have been written with another name, such as `pwm_min_us` for
-        // `pwm_low_us`.
+        // If a limit seems to be missing, it may have been written with another name, such as `pwm_min_us`
+        // for `pwm_low_us`.
         let stem = low.split('_').next();
         let mut others = header
             .iter()
@@ -311,8 +311,8 @@ pub(super) fn apply_header(
     Ok(declared)
 }
 
-/// The motor layout by `motorN_factors` of every motor, by `frame`, or by `frame_class` and
-/// `frame_type`.
+/// The motor layout that the header declares: with `motorN_factors` for every motor, with `frame`,
+/// or with `frame_class` and `frame_type`.
 fn geometry_of(header: &[HeaderLine], motors: usize) -> Result<DeclaredLayout, ReadError> {
     let entry = |key: &str| header.iter().find(|entry| entry.key == key);
     let frame = entry("frame")

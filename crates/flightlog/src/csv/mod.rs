@@ -36,8 +36,8 @@ pub(crate) fn has_times(start: &[u8]) -> bool {
     header.any(|name| name == b"t_s")
 }
 
-/// Whether a text looks like a flight CSV, or like another table, in which the column of times may have another name:
-/// the first line names several columns, and the next one has as many cells.
+/// Whether a text looks like a table: the first line names several columns, and the next line has as many cells. The
+/// table may be a flight CSV, or a table whose column of times has another name.
 pub(crate) fn looks_like(start: &[u8]) -> bool {
     let mut lines = content(start);
     let (Some(header), row) = (lines.next(), lines.next()) else {
@@ -149,7 +149,7 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> Result<Flight, R
     flight.series = preferred(vec![rows.series]);
     let declared = apply_header(&mut flight, header, &layout, span_s)?;
     flight.range = options.range_or_given(flight.range);
-    // Without limits the meaning of the commands is unknown, except for fractions.
+    // If the limits are unknown, so is the meaning of the commands; then only fractions are refused.
     if let Some((raw, refused)) = other_unit
         && (flight.range.is_some() || (0.0..=1.0).contains(&raw))
     {

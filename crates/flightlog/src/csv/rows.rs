@@ -367,7 +367,7 @@ impl RowCollector {
     }
 }
 
-/// The number in a cell: NaN for an empty one and for `nan`.
+/// The number in a cell; NaN for an empty cell and for the text `nan`.
 fn number(record: &ByteRecord, column: usize) -> Result<f64, String> {
     let bytes = cell(record.get(column).unwrap_or_default());
     if bytes.is_empty() {

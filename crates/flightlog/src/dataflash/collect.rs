@@ -95,7 +95,7 @@ impl<'o> Collector<'o> {
         if is_same {
             return true;
         }
-        // Within one boot, a second and different definition of a type is damage.
+        // If the same boot defines a type a second time in a different way, the definition is damaged.
         if is_known && !self.redefine {
             self.report
                 .bad(&format!("message `{}` is defined twice", format.name));

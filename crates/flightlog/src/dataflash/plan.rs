@@ -1,11 +1,11 @@
-//! The use of each kind of DataFlash message.
+//! Determines how each kind of DataFlash message is used.
 
 use super::format::Format;
 use super::signals::{INSTANCE, MessageSpec, SPECS, SignalSource};
 use crate::Options;
 use crate::signal::Label;
 
-/// The use of a message type. The numbers are indices of columns.
+/// How the messages of a type are used. The numbers without a description are indices of columns.
 #[derive(Debug)]
 pub(super) enum MessageRole {
     Nothing,
@@ -20,7 +20,7 @@ pub(super) enum MessageRole {
         number: Option<usize>,
         name: usize,
     },
-    /// Output commands: the prefix of their labels, then the column and number of each.
+    /// Output commands: the prefix of their labels, then the index of the column and the number of each output.
     Outputs(&'static str, Vec<(usize, u16)>),
     /// The index of the series, and how each of its signals is computed.
     Series(usize, Vec<ResolvedSource>),
@@ -45,8 +45,8 @@ pub(super) struct MessageType {
 }
 
 impl MessageType {
-    /// Determines the use of a message type. `series` returns the index of the series with the given message name and
-    /// signals.
+    /// Determines how the messages of a type are used. `series` returns the index of the series with the given
+    /// message name and signals.
     pub(super) fn new(
         format: Format,
         options: &Options,
@@ -83,7 +83,7 @@ impl MessageType {
     }
 }
 
-/// The use of a message type without signals.
+/// How the messages of a type without signals are used.
 fn role(format: &Format) -> Option<MessageRole> {
     let column = |label| format.column(&[label]);
     match format.name.as_str() {

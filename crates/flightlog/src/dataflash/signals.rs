@@ -2,7 +2,7 @@
 
 /// How a signal is computed from the fields of a message.
 pub(crate) enum SignalSource {
-    /// The first of these labels that the message has.
+    /// The field with the first of these labels that the message has.
     Field(&'static [&'static str]),
     /// As `Field`, but in hundredths if the field is an integer (firmware before 3.3).
     Hundredths(&'static [&'static str]),

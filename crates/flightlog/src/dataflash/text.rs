@@ -11,7 +11,8 @@ use crate::{Flight, Options};
 /// The maximum length of a line in bytes; longer lines are damaged and skipped.
 const LONGEST_LINE: u64 = 4096;
 
-/// The maximum number of lines that are stored from before the definitions; they contain the name of the firmware.
+/// The maximum number of lines that are stored from before the first definition; these lines contain the name of the
+/// firmware.
 const GREETINGS: usize = 20;
 
 /// Whether one of the first lines defines a message.

@@ -10,7 +10,7 @@ const BYTES_PER_MESSAGE: usize = 64;
 /// A message that is pending until its time is known.
 pub(super) enum PendingMessage {
     Binary(u8, Vec<u8>),
-    /// The cells joined by commas: no cell contains one.
+    /// The cells, joined by commas; no cell contains a comma.
     Text(u8, String),
 }
 

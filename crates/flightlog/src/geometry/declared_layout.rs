@@ -49,9 +49,9 @@ impl DeclaredLayout {
         }
     }
 
-    /// The layout by FRAME_CLASS and FRAME_TYPE (3.5 and later). In older firmware, the class is in the message
-    /// `Frame: QUAD`, and FRAME is the type. Without that message, the class is derived from the number of motors if
-    /// only one class fits.
+    /// The layout from FRAME_CLASS and FRAME_TYPE (firmware 3.5 and later). In older firmware, the class is in the
+    /// message `Frame: QUAD`, and the parameter FRAME is the type. Without that message, the class is derived from
+    /// the number of motors if only one class fits.
     pub(crate) fn of_ardupilot(parameters: &Parameters, vehicle: &Vehicle) -> Self {
         let frame = vehicle.frame.as_deref();
         let number = |name: &str| parameters.get(name).map(|value| value as i64);
@@ -101,8 +101,8 @@ impl DeclaredLayout {
         }
     }
 
-    /// The layout by positions, thrust axes and moment ratios of PX4's control allocation (1.13 and later), or by the
-    /// number of the airframe in older versions.
+    /// The layout from the positions, thrust axes and moment ratios of PX4's control allocation (1.13 and later), or
+    /// from the number of the airframe in older versions.
     pub(crate) fn of_px4(parameters: &Parameters) -> Self {
         if let Some(factors) = rotors(parameters) {
             return Self::Factors {
@@ -121,7 +121,7 @@ impl DeclaredLayout {
     }
 }
 
-/// The factors from the moments of the rotors.
+/// The mixer factors, computed from the moments of the rotors.
 fn rotors(parameters: &Parameters) -> Option<Vec<(u16, [f64; 3])>> {
     let (moments, _): (Vec<[f64; 3]>, Vec<_>) = rotor_effects(parameters)?.into_iter().unzip();
     let turns = |axis: usize| moments.iter().any(|moment| moment[axis].abs() > 1e-9);
@@ -154,16 +154,16 @@ pub(crate) fn rotor_effects(parameters: &Parameters) -> Option<Vec<([f64; 3], [f
         .collect()
 }
 
-/// CA_ROTORn_CT of every rotor. Unless all are known, they count as equal, which is the default: combining known values
-/// with assumed ones could introduce a difference that the vehicle does not have.
+/// CA_ROTORn_CT of every rotor. Unless the values of all rotors are known, all rotors count as equal, which is the
+/// default: combining known values with assumed ones could introduce a difference that the vehicle does not have.
 fn thrust_coefficients(parameters: &Parameters, count: u16) -> Vec<f64> {
     let known = (0..count).map(|rotor| parameters.get(&format!("CA_ROTOR{rotor}_CT")));
     let known: Option<Vec<f64>> = known.collect();
     known.unwrap_or_else(|| vec![1.0; usize::from(count)])
 }
 
-/// FRAME_CLASS and FRAME_TYPE of the layout of a PX4 airframe, by the group of its number
-/// (<https://docs.px4.io/main/en/airframes/airframe_reference.html>).
+/// FRAME_CLASS and FRAME_TYPE of the layout of a PX4 airframe, which depends on the group that its
+/// number belongs to (<https://docs.px4.io/main/en/airframes/airframe_reference.html>).
 fn airframe_group(airframe: i64) -> Option<(i64, i64)> {
     use super::tables::{HEXA, OCTA, OCTAQUAD, PLUS, QUAD, X, Y6, Y6B};
     Some(match airframe {

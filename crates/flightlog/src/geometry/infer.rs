@@ -9,8 +9,8 @@ use crate::Flight;
 
 /// The minimum number of rows in the air.
 const MIN_ROWS: usize = 100;
-/// A layout fits if at most this share of the variance is outside its space. Calm and gusty flights have 0 to 0.02;
-/// failed motors and motors at a limit raise it.
+/// A layout fits if at most this share of the variance is outside its space. In calm and gusty flights the share is
+/// 0 to 0.02; failed motors and motors at a limit raise it.
 const FITS: f64 = 0.05;
 /// A layout does not fit if at least this share of the variance is outside its space.
 const MISFIT: f64 = 0.2;
@@ -19,15 +19,15 @@ const CLEARLY: (f64, f64) = (5.0, 0.002);
 /// The minimum correlation of the efforts with the outputs of the rate controllers for a layout to be right. It is
 /// 0.44 to 1 for the right layout, and higher than for any other layout.
 const FOLLOWS: f64 = 0.4;
-/// How much this correlation must be higher for the right layout than for any other layout.
+/// The minimum difference by which this correlation must be higher for the right layout than for any other layout.
 const FOLLOWS_LEAD: f64 = 0.2;
 /// A declared layout is doubted only if its correlation of effort and attitude error is below this. Right layouts have
 /// 0.0 to 0.9; well-tuned and slow flights have low values.
 const DOUBT_BELOW: f64 = 0.1;
 /// Another layout fits if its correlation of effort and attitude error exceeds this.
 const ALTERNATIVE_ABOVE: f64 = 0.4;
-/// `(minimum, lead)`: another layout also fits if its correlation exceeds `minimum`, and exceeds that of the declared
-/// layout by more than `lead`.
+/// `(minimum, lead)`: another layout also fits if its correlation exceeds `minimum`, and is higher than the
+/// correlation of the declared layout by more than `lead`.
 const ALTERNATIVE_LEAD: (f64, f64) = (0.25, 0.6);
 
 /// The signals that show whether a layout is right: the outputs of the rate controllers, and the attitude.
@@ -177,8 +177,8 @@ fn layouts(flight: &Flight) -> impl Iterator<Item = (i64, String, Vec<[f64; 3]>)
     })
 }
 
-/// Variances and covariances of the commands in the air, with the controller outputs and attitude errors that they
-/// respond to.
+/// Variances and covariances of the commands in the air, and of the controller outputs and attitude errors to
+/// which the commands respond.
 struct Variance {
     commands: Covariance,
     /// The last columns are the outputs of the rate controllers of roll, pitch and yaw.

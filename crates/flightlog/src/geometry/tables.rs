@@ -191,7 +191,7 @@ pub(super) fn normalised(mut factors: Vec<[f64; 3]>) -> Vec<[f64; 3]> {
     factors
 }
 
-/// Motors on arms at these angles, with these yaw factors.
+/// The factors of motors on arms at these angles, with these yaw factors.
 fn arms(angles_deg: &[f64], yaw: &[f64]) -> Option<Vec<[f64; 3]>> {
     let factor = |(angle, yaw): (&f64, &f64)| {
         let (sin, cos) = angle.to_radians().sin_cos();

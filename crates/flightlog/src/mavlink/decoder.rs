@@ -75,7 +75,7 @@ pub(crate) struct ServoOutputs {
     pub(crate) port: u8,
     /// The time of the vehicle, which wraps around after 71 minutes.
     pub(crate) time_us: u32,
-    /// Outputs 1 to 16 of the port; in version 1 those above 8 are 0.
+    /// Outputs 1 to 16 of the port; in MAVLink 1, the outputs above 8 are 0.
     pub(crate) pulses_us: [u16; 16],
 }
 
@@ -100,7 +100,7 @@ pub(crate) struct Decoder {
     is_active: Option<bool>,
     /// Whether the vehicle is in the air, from EXTENDED_SYS_STATE.landed_state.
     is_flying: Option<bool>,
-    /// Whether EXTENDED_SYS_STATE ever had a landed state.
+    /// Whether any EXTENDED_SYS_STATE message contained a known landed state.
     has_landed_state: bool,
     /// Whether the motors are stopped on purpose (flight termination, kill switch).
     is_terminating: bool,
@@ -178,7 +178,7 @@ impl Decoder {
 
     /// Processes a message of the vehicle.
     pub(crate) fn message(&mut self, component: u8, id: u32, payload: &Payload) -> DecoderChange {
-        // Ground stations store parameters under other component ids.
+        // Parameters are accepted from every component, because ground stations store them under other component ids.
         if component != AUTOPILOT && id != PARAM_VALUE {
             return DecoderChange::Nothing;
         }
@@ -205,7 +205,8 @@ impl Decoder {
                 DecoderChange::State
             }
             STATUSTEXT => DecoderChange::Text(text(&payload[1..51])),
-            // The payload begins with the index, the system and the component of the requester; the name follows.
+            // The payload begins with the index of the parameter, then the system and the component of the requester;
+            // the name follows.
             PARAM_ERROR => self.parameter_error(text(&payload[4..20]), payload[20]),
             _ => DecoderChange::Nothing,
         }

@@ -33,9 +33,9 @@ pub(super) fn motors_expected(
 }
 
 impl KnownOutputs {
-    /// Determines motors and ranges. If no parameter names the motors, they are the first outputs, as many as the type
-    /// of vehicle has. If the range of the commands is unknown, it is the one `given` by the user, or else the default
-    /// of the autopilot.
+    /// Determines motors and ranges. If no parameter names the motors, they are assumed to be on the first outputs,
+    /// and the type of the vehicle determines their number. If the range of the commands is unknown, the range `given`
+    /// by the user is used, or else the default of the autopilot.
     pub(crate) fn of(
         parameters: &Parameters,
         vehicle: &Vehicle,

@@ -128,7 +128,7 @@ pub enum PacketScan<'a> {
     /// A packet with a message that is not in the dialect, so that its checksum cannot be verified. Another packet, or
     /// nothing, follows it.
     Unverified(Packet<'a>),
-    /// This number of bytes is not part of a packet.
+    /// The given number of bytes at the start is not part of a packet, for the given reason.
     Skip(usize, SkipReason),
     /// Possibly the beginning of a packet; more bytes are needed.
     More,
@@ -271,7 +271,7 @@ mod round_trips {
     }
 
     proptest! {
-        /// With any input, every step consumes at least one byte or needs more, and never panics.
+        /// For any input, every step consumes at least one byte or requests more bytes, and never panics.
         #[test]
         fn any_bytes_are_accepted(bytes in prop::collection::vec(prop_oneof![Just(0xfd), Just(0xfe), any::<u8>()], 0..600)) {
             let mut at = 0;

@@ -32,7 +32,7 @@ const STREAMS: [MavDataStream; RATED.len()] = [
     MavDataStream::MAV_DATA_STREAM_RC_CHANNELS,
 ];
 /// The time to listen before the first request, in seconds. Rates apply to the whole link, and another station that
-/// shares it may have requested higher ones.
+/// shares it may have requested higher rates.
 const LISTEN_S: f64 = 1.0;
 /// The share of the requested rate below which the rate is requested again.
 const SLOW_AGAIN: f64 = 0.5;

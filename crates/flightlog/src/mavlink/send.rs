@@ -24,7 +24,7 @@ pub struct Sender {
 }
 
 impl Sender {
-    /// Creates a sender with this component id, for any system.
+    /// Creates a sender with this component id; the system id is chosen for each packet.
     pub fn new(component: u8) -> Sender {
         Sender {
             component,

@@ -9,7 +9,7 @@ use crate::{
     Geometry, Motor, PulseRange, Range, Vehicle, ardupilot, geometry, parameters::Parameters,
 };
 
-/// The values that mean that an output is not driven or unknown.
+/// The values of an output that is not driven (0) or whose pulse width is unknown.
 const NO_PULSE: [u16; 2] = [0, u16::MAX];
 /// The number of outputs of PX4's AUX bank on any board.
 const AUX_OUTPUTS: usize = 8;
@@ -26,7 +26,7 @@ pub struct Setup {
     pub geometry: Option<Geometry>,
     /// The range of the commands, 0 % to 100 %.
     pub range: Range,
-    /// The part of the range that is used in flight, as fractions of it.
+    /// The part of the range that is used in flight, as fractions of the whole range.
     pub effective_range: Range,
     /// The assumptions for values that the vehicle did not report, as texts; empty without assumptions.
     pub assumed: Vec<String>,
@@ -102,7 +102,7 @@ impl Setup {
         }
     }
 
-    /// The port of SERVO_OUTPUT_RAW that completes the commands of all motors.
+    /// The port whose SERVO_OUTPUT_RAW message completes the commands of all motors.
     pub(super) fn last_port(&self) -> usize {
         let last = self.outputs.iter().max().copied().unwrap_or(1);
         last.saturating_sub(1) / OUTPUTS_PER_PORT
@@ -123,7 +123,7 @@ fn are_alike(one: &[f64], other: &[f64]) -> bool {
     one.len() == other.len() && one.iter().zip(other).all(alike)
 }
 
-/// The parameters that motors and their range depend on, and that are not known yet.
+/// The parameters that determine the motors and their range and that are not known yet.
 pub(super) fn missing(parameters: &Parameters, vehicle: &Vehicle, is_px4: bool) -> Vec<String> {
     let mut names = if is_px4 {
         wanted_of_px4(parameters, vehicle)

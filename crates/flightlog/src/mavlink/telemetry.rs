@@ -28,9 +28,10 @@ const ACCEPTED: f64 = 0.0;
 const BATTERY_STATUS: u32 = 147;
 const VIBRATION: u32 = 241;
 
-/// The messages for which a rate is requested: motor commands, attitude and the landed state; then the messages of
-/// signals, which are requested only if a signal is wanted. Messages that only one kind of autopilot has (wind, wanted
-/// angles, radio) are read but not requested, because a refusal does not name its message.
+/// The messages for which a rate is requested: first motor commands, attitude and the landed state, then the messages
+/// that contain other signals, which are requested only if one of these signals is wanted. Messages that only one kind
+/// of autopilot has (wind, wanted angles, radio) are read but not requested, because a refusal does not name the
+/// message that it refuses.
 pub(super) const RATED: [u32; 10] = [
     36,
     ATTITUDE,
@@ -63,12 +64,13 @@ const LANDED_FRESH_S: f64 = 1.5;
 /// A clock that jumps is accepted only after the old clock has been silent for this time, in seconds.
 const CLOCK_SILENT_S: f64 = 2.0;
 
-/// A clock of a live vehicle, and the time at which its latest accepted stamp arrived.
+/// A clock of a live vehicle, and the time at which its latest accepted timestamp arrived.
 #[derive(Debug, Default)]
 struct LiveClock {
     clock: Clock,
     received_s: Option<f64>,
-    /// The latest stamp as received, to detect repeated packets, which do not confirm a timestamp.
+    /// The latest timestamp as received, to detect repeated packets, because a repeated packet does not confirm a
+    /// timestamp.
     stamp: Option<u32>,
 }
 
@@ -145,7 +147,7 @@ pub struct Telemetry {
     /// The time at which a landed state last arrived.
     landed_state_s: Option<f64>,
     outputs: Outputs,
-    /// The port that completes the commands of all motors.
+    /// The port whose message completes the commands of all motors.
     last_port: usize,
     seen: [u64; RATED.len()],
     has_commands: bool,
@@ -246,9 +248,9 @@ impl Telemetry {
         self.decoder.is_armed()
     }
 
-    /// Whether the vehicle is in the air, by EXTENDED_SYS_STATE or, without it, by the state in the heartbeats of
-    /// ArduPilot (active in the air, standby while landed). A vehicle that reports neither counts as in the air while
-    /// it is armed.
+    /// Whether the vehicle is in the air, according to EXTENDED_SYS_STATE. Without that message, the state in the
+    /// heartbeats of ArduPilot is used (active in the air, standby while landed). A vehicle that reports neither
+    /// counts as in the air while it is armed.
     pub fn is_in_air(&self) -> bool {
         self.decoder.is_in_air_or_armed()
     }
@@ -396,8 +398,8 @@ impl Telemetry {
         TelemetryChange::Nothing
     }
 
-    /// Detects a reboot by the clock of attitude messages, which wraps around after 49 days, unlike the clock of the
-    /// commands, which does so after 71 minutes.
+    /// Detects a reboot by the clock of attitude messages. This clock wraps around only after 49 days, but the clock
+    /// of the commands after 71 minutes.
     fn check_boot(&mut self, boot_ms: u32, now_s: f64) -> TelemetryChange {
         let clock = &mut self.boot_clock;
         if clock.stamp.replace(boot_ms) == Some(boot_ms) {
@@ -471,8 +473,8 @@ impl Telemetry {
         self.decoder.parameters.of_motors("PARAM_VALUE")
     }
 
-    /// The parameters that motors and their range depend on and that are not known yet, except those that the vehicle
-    /// reported as missing.
+    /// The parameters that determine the motors and their range and that are not known yet, except parameters that
+    /// the vehicle reported as missing.
     pub(super) fn missing_parameters(&self) -> Vec<String> {
         let mut names = missing(
             &self.decoder.parameters,
@@ -501,7 +503,7 @@ impl Telemetry {
 }
 
 impl LiveClock {
-    /// The time of a stamp, if it is accepted.
+    /// The time at which a message with the timestamp `t_s` is accepted; `None` if it is not accepted.
     fn check(&mut self, t_s: f64, now_s: f64, jumps: &mut u64) -> Option<f64> {
         let is_alive = |received_s: f64| now_s - received_s < CLOCK_SILENT_S;
         if !self.clock.is_next(t_s) && self.received_s.is_some_and(is_alive) {

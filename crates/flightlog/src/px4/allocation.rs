@@ -107,9 +107,9 @@ fn solve(mut matrix: [[f64; AXES]; AXES], mut right: [f64; AXES]) -> Option<[f64
     Some(std::array::from_fn(|i| right[i] / matrix[i][i]))
 }
 
-/// The scales of the axes. Set points are normalised: roll and pitch together, by the larger of the two, so that the
-/// contributions of a quadrotor are 0.71; yaw so that its largest contribution is 1; thrust so that the mean
-/// contribution is 1.
+/// The scales that normalise the set points of each axis. Roll and pitch are scaled together, by the larger of the
+/// two, so that the contributions of a quadrotor are 0.71; yaw is scaled so that its largest contribution is 1, and
+/// thrust so that its mean contribution is 1.
 fn scales(parts: &[[f64; AXES]]) -> [f64; AXES] {
     let of_axis = |axis: usize| parts.iter().map(move |parts| parts[axis]);
     let turning = |axis: usize| {

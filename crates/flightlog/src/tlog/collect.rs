@@ -32,7 +32,7 @@ pub(super) struct Collector<'o> {
 struct SystemState {
     decoder: Decoder,
     time: VehicleTime,
-    /// The offset of the vehicle's clock from the time of reception at the first commands.
+    /// The offset of the vehicle's clock from the time of reception, determined at the first motor commands.
     ahead_s: f64,
     outputs: Outputs,
     has_port_0: bool,
@@ -80,8 +80,8 @@ impl<'o> Collector<'o> {
         let mut flight = Flight::empty(Format::Tlog);
         flight.report = self.report;
         flight.utc_at_zero_s = self.zero_us.map(|zero_us| zero_us as f64 * 1e-6);
-        // The vehicle is the first system with the heartbeat of a vehicle; without any, the first system that sends as
-        // an autopilot.
+        // The vehicle is the first system that sent the heartbeat of a vehicle. If there is none, it is the first
+        // system that sends as an autopilot.
         let is_vehicle = |(_, state): &(u8, SystemState)| state.decoder.mav_type().is_some();
         let mut systems = self.systems;
         let chosen = systems.iter().position(is_vehicle).unwrap_or(0);

@@ -84,7 +84,7 @@ fn scan(collector: &mut Collector<'_>, window: &[u8], at_end: bool) -> usize {
     at.min(window.len())
 }
 
-/// The stamp and packet at the start of `bytes`.
+/// The timestamp and the packet at the start of `bytes`.
 fn record(bytes: &[u8]) -> Option<(u64, Packet<'_>)> {
     let (stamp, rest) = bytes.split_first_chunk()?;
     Some((u64::from_be_bytes(*stamp), Packet::at(rest)?))

@@ -10,14 +10,14 @@ const BOOT_MS: [u32; 2] = [30, 83];
 /// seconds.
 const LATE_S: f64 = 5.0;
 
-/// The clock of one vehicle. It has the times in the motor commands; between commands, it advances with the times of
-/// reception.
+/// The clock of one vehicle. It follows the times in the motor commands; between commands, it advances with the
+/// times of reception.
 #[derive(Default)]
 pub(super) struct VehicleTime {
     clock: Clock,
     /// The latest motor commands: the time of reception, and their own time.
     latest: Option<(f64, f64)>,
-    /// Commands whose time jumps, held until the next ones show whether it is damaged.
+    /// Commands whose time jumps, held until the next commands show whether that time is damaged.
     waiting: Option<(f64, ServoOutputs)>,
 }
 
@@ -92,7 +92,7 @@ impl VehicleTime {
         self.clock.boots_s()
     }
 
-    /// The time of another message; the time of reception while the vehicle's clock is unknown.
+    /// The time of a message without motor commands; while the vehicle's clock is unknown, the time of reception.
     pub(super) fn other(&self, received_s: f64, id: u32, payload: &Payload) -> f64 {
         let guess_s = self.guess_s(received_s);
         let Some((_, commands_s)) = self.latest else {

@@ -80,7 +80,7 @@ impl<'o> Collector<'o> {
         self.latest.accept(start_us as f64 * 1e-6);
     }
 
-    /// Processes a message without its head.
+    /// Processes the body of a message; `letter` is the type of the message.
     pub(super) fn message(&mut self, letter: u8, body: &[u8]) {
         match letter {
             b'D' => self.data(body),

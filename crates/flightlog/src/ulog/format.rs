@@ -11,7 +11,7 @@ const LONGEST: usize = u16::MAX as usize;
 /// The maximum number of fields of a topic, including nested topics; PX4's topics have under 200. It bounds the time
 /// for nested definitions.
 const MAX_FIELDS: usize = 1024;
-/// The maximum size of all definitions in bytes; PX4's definitions have under a quarter of it.
+/// The maximum size of all definitions in bytes; the definitions of PX4 have less than a quarter of this size.
 const MAX_BYTES: usize = 1_000_000;
 
 /// One field of a topic.
@@ -106,7 +106,7 @@ impl Formats {
         self.size_of(nested, depth.checked_sub(1)?, left)
     }
 
-    /// The position of the field `name`, which may have an index as in `q[2]`, in a topic.
+    /// The position, in a topic, of the field `name`, which may have an index as in `q[2]`.
     pub(super) fn field(&self, topic: &str, name: &str) -> Option<NumericField> {
         let (name, index) = match name.split_once('[') {
             Some((name, index)) => (name, index.strip_suffix(']')?.parse().ok()?),

@@ -1,4 +1,4 @@
-//! The use of each ULog topic.
+//! Determines how each ULog topic is used.
 
 use super::signals::{SignalSource, TopicSpec};
 use crate::Options;
@@ -6,7 +6,7 @@ use crate::angle::Angle;
 use crate::field::{NumericField, vector_length};
 use crate::signal::Label;
 
-/// The use of the messages of one topic.
+/// How the messages of one topic are used.
 pub(super) enum TopicRole {
     Nothing,
     /// Commands of motors or outputs: the index in `outputs`, and the fields of the commands.

@@ -28,8 +28,8 @@ impl Topics {
         }
     }
 
-    /// The message at the start of `bytes` with its head, if it can be one; `None` for damage and for a message that is
-    /// cut off.
+    /// The message at the start of `bytes` with its head, if these bytes can be a message; `None` for damage and for a
+    /// message that is cut off.
     pub(super) fn message<'a>(&self, bytes: &'a [u8]) -> Option<&'a [u8]> {
         let length = self.length(bytes)?;
         let message = bytes.get(..length)?;

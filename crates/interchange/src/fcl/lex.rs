@@ -34,7 +34,7 @@ fn comment(rest: &str) -> Option<usize> {
         .or_else(|| until("(*", "*)"))
 }
 
-/// The length of a number. `1..2` consists of a number, two dots and a number.
+/// The length of the number at the start of `rest`. In `1..2`, the number ends before the two dots.
 fn number(rest: &str) -> Option<usize> {
     let bytes = rest.as_bytes();
     let digits = |mut at: usize| {

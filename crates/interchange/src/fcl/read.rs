@@ -9,7 +9,8 @@ use fuzzy::{
 use super::lex;
 use crate::{Losses, blocks, fll::output_conditions, model_draft::ModelDraft};
 
-/// Reads the function block `name`, or the only one if it is `None`.
+/// Reads the function block `name`. If `name` is `None`, reads the first function block, and reports a loss if there
+/// are several.
 pub(crate) fn read(
     text: &str,
     name: Option<&str>,
@@ -75,8 +76,8 @@ impl<'r, 't> Reader<'r, 't> {
         is
     }
 
-    /// Whether a section ends here: at `keyword`, which is consumed, or at the end of the text, which is reported as an
-    /// error.
+    /// Whether a section ends here: either at `keyword`, which is consumed, or at the end of the text, which is
+    /// reported as an error.
     pub(super) fn ends(&mut self, keyword: &str) -> bool {
         let is_cut_off = self.peek().is_none();
         if is_cut_off {
@@ -144,8 +145,8 @@ impl<'r, 't> Reader<'r, 't> {
         self.draft.error("fcl-syntax", part, message, &help);
     }
 
-    /// Moves to the function block with the given name. Without a name it moves to the first block,
-    /// and reports a loss if there are several.
+    /// Finds the function block with the given name, and moves to it. Without a name, the first
+    /// block is read, and a loss is reported if there are several. Returns `false` after an error.
     fn choose(&mut self, name: Option<&str>) -> bool {
         let words = self.words.iter().zip(self.words.iter().skip(1)).enumerate();
         let blocks = words.filter(|(_, (word, _))| word.eq_ignore_ascii_case("FUNCTION_BLOCK"));

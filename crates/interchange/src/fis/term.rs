@@ -11,7 +11,7 @@ use crate::{Format, model_draft::ModelDraft, shapes};
 
 const OTHERS: [&str; 3] = ["discretemf", "constant", "linear"];
 
-/// A quote of a word processor.
+/// Whether a character is a curly quote, as word processors insert it.
 fn is_curly(c: char) -> bool {
     matches!(c, '\u{2018}'..='\u{201f}')
 }

@@ -7,8 +7,8 @@ use fuzzy::{
 
 use crate::{model_draft::ModelDraft, shapes};
 
-/// Replaces the weighted average by the Tsukamoto defuzzifier if all terms are fuzzy sets: fuzzylite also chooses by
-/// the terms.
+/// Replaces the weighted average by the Tsukamoto defuzzifier if all terms are fuzzy sets, because fuzzylite derives
+/// the defuzzifier from the terms.
 pub(crate) fn tsukamoto(output: &mut Output) {
     if output.defuzzifier == Defuzzifier::WeightedAverage
         && !output.variable.terms.iter().any(shapes::is_computed)

@@ -103,11 +103,12 @@ fn xml_mistake(error: &roxmltree::Error) -> (String, String) {
     }
 }
 
-/// The maximum number of attributes of an element, because each is compared with the others.
+/// The maximum number of attributes of an element. The number is limited because each attribute is compared with the
+/// others.
 const MAX_ATTRIBUTES: usize = 1000;
 
-/// The maximum number of namespace declarations, because each element with a declaration copies the declarations of
-/// all elements around it.
+/// The maximum number of namespace declarations. The number is limited because each element with a declaration
+/// copies the declarations of all elements around it.
 const MAX_NAMESPACES: usize = 100;
 
 /// The maximum depth of nested elements.
@@ -239,7 +240,8 @@ impl Reader<'_> {
         }
     }
 
-    /// The number in an attribute; `None` if there is none, or with an error if it is not a number.
+    /// The number in an attribute; `None` if the attribute is missing, or if it is not a number, which is reported as
+    /// an error.
     fn number(&mut self, node: Node<'_, '_>, name: &str) -> Option<f64> {
         let written = attribute(node, name)?;
         let number = crate::model_draft::number(written.trim());

@@ -67,7 +67,7 @@ impl Clusters {
         }
     }
 
-    /// The firing strength of a cluster: the product of gaussians.
+    /// The firing strength of a cluster: the product of the gaussians of all inputs.
     pub(super) fn strength(&self, center: &[f64], x: &dyn Fn(usize) -> f64) -> f64 {
         let parts = self.inputs.iter().zip(&self.deviations).zip(center);
         let squares =

@@ -10,10 +10,11 @@ use crate::{
 
 use super::{Consequents, structure::Structure};
 
-/// The ridge, as a share of the diagonal elements. It pulls consequents that are supported by few rows to the mean.
+/// The ridge, as a share of the diagonal elements. It pulls consequents that are supported by few rows towards the
+/// mean.
 pub(super) const RIDGE: f64 = 1e-3;
 
-/// The sums over a set of rows that a least-squares fit needs.
+/// The sums over a set of rows from which a least-squares fit is computed.
 #[derive(Clone)]
 struct Sums {
     squares: DMatrix<f64>,
@@ -86,7 +87,7 @@ pub(super) struct Fit<'a> {
 }
 
 impl Fit<'_> {
-    /// The number of coefficients of a rule: one for each input, and a constant.
+    /// The number of coefficients of a rule: a constant and, for linear consequents, one coefficient for each input.
     fn coefficients_per_rule(&self) -> usize {
         match self.consequents {
             Consequents::Constants => 1,
@@ -94,7 +95,7 @@ impl Fit<'_> {
         }
     }
 
-    /// The sums over the rows of each fold.
+    /// Returns the sums over the rows of each of `parts` parts. `part` returns the part that a row belongs to.
     fn sums(&self, data: &Data, parts: usize, part: impl Fn(usize) -> usize) -> Vec<Sums> {
         let scales = self.scales(data);
         let per_rule = self.coefficients_per_rule();
@@ -124,7 +125,7 @@ impl Fit<'_> {
         sums
     }
 
-    /// The numbers of each rule: the coefficients, then the constant.
+    /// Fits the numbers of each rule: the coefficients, then the constant.
     pub(super) fn numbers(&self, data: &Data) -> Vec<Vec<f64>> {
         let per_rule = self.coefficients_per_rule();
         let mean = mean(data);

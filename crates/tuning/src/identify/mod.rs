@@ -119,7 +119,7 @@ const MIN_GAIN_OF_ALL: f64 = 1e-3;
 /// The radii of clusters that are tried, as shares of the ranges.
 const RADII: [f64; 4] = [0.3, 0.5, 0.7, 1.0];
 
-/// The maximum number of candidate columns, because each step of the search tries all of them.
+/// The maximum number of candidate columns. It is limited because each step of the search tries all of them.
 const MAX_COLUMNS: usize = 500;
 
 /// Rejects tables with more columns than [`identify`] accepts, so that a program can check this before it reads the
@@ -301,7 +301,8 @@ impl Search<'_> {
         found.collect()
     }
 
-    /// Adds an input with two or three terms, or another term to an input in use.
+    /// Returns the structures that result if an input with two or three terms is added, or if an input in use gets
+    /// another term.
     fn grids(&self, from: &Structure, fresh: &[usize]) -> Vec<(usize, usize, Structure)> {
         let Structure::Grid(axes) = from else {
             return Vec::new();

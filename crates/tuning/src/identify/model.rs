@@ -28,7 +28,7 @@ const NAMES: [&[&str]; 4] = [
 /// The largest number of terms for which there are names.
 pub const MAX_TERMS: usize = NAMES.len() + 1;
 
-/// Rounds to a power of ten that is at most a twentieth of the range.
+/// Rounds to a multiple of a power of ten; this power is at most a twentieth of the range.
 pub(super) fn round(value: f64, range: f64, how: fn(f64) -> f64) -> f64 {
     let exponent = (range / 20.0).log10().floor() as i32;
     decimal(how(value / 10_f64.powi(exponent)), exponent).unwrap_or(value)

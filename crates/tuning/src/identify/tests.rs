@@ -160,8 +160,8 @@ fn a_curved_relation_is_predicted_better_than_by_a_line() {
     assert_eq!(stopped.unwrap(), None);
 }
 
-/// On a linear relation with noise, the error of linear regression is the noise, and the identified models are not
-/// better.
+/// For a linear relation with noise, the error of linear regression is the noise alone, and the identified models
+/// are not better.
 #[test]
 fn a_linear_relation_is_not_predicted_better_than_by_a_line() {
     let (names, data) = rows(400, |x, y| 2.0 * x - y + 1.0);

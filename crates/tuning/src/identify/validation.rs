@@ -33,7 +33,7 @@ pub struct IdentifyValidation {
     pub ratio: Interval,
     /// The predictions of the identified models for left-out rows of each class, if the truths are classes.
     pub confusion: Option<Confusion>,
-    /// The number of rows for which no rule fires; the mean of the other rows is used for them.
+    /// The number of rows for which no rule fires; they are predicted as the mean of the rows in other folds.
     pub without_value: usize,
 }
 
@@ -52,7 +52,7 @@ pub fn cross_validate(
 ) -> Result<Option<IdentifyValidation>, TuneError> {
     data.check_columns(names.len(), crate::Loss::Squared)?;
     let data = &*data.weighted();
-    // Uses other folds than those for choosing steps.
+    // These folds differ from the folds for choosing steps.
     let folds = Folds::new(data, folds, settings.seed.wrapping_add(1));
     let mut predictions = [const { Vec::new() }; 3].map(|_: Vec<f64>| vec![f64::NAN; data.len()]);
     let mut without_value = 0;
@@ -114,7 +114,8 @@ pub fn cross_validate(
     }))
 }
 
-/// Predicts rows by a linear regression on other rows, which is fitted as one rule that always fires.
+/// Predicts rows by a linear regression on other rows. The regression is computed by fitting one rule that always
+/// fires.
 fn line(known: &Data, rows: &Data) -> Vec<f64> {
     let varies = |input: &usize| {
         let (low, high) = range(&known.inputs[*input]);

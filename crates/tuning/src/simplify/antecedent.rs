@@ -52,7 +52,7 @@ pub(crate) fn variable<'m>(model: &'m Model, name: &str) -> Option<&'m Variable>
     model.variables().find(|variable| variable.name == name)
 }
 
-/// Joins parts to an antecedent. Without parts it is always true: `variable IS any`.
+/// Joins parts into an antecedent. If there are no parts, the antecedent is always true: `variable IS any`.
 pub(crate) fn condition(parts: &[VariableCondition], variable: &str) -> Condition {
     let mut conditions: Vec<Condition> = parts
         .iter()
@@ -66,8 +66,8 @@ pub(crate) fn condition(parts: &[VariableCondition], variable: &str) -> Conditio
     }
 }
 
-/// Returns conditions that are true if a variable belongs to one of the given terms, the shortest
-/// first; `None` means that no condition is needed.
+/// Returns alternative conditions that are true if a variable belongs to one of the given terms,
+/// the shortest first; `None` in the list means that no condition is needed.
 pub(crate) fn one_of(variable: &Variable, terms: &BTreeSet<usize>) -> Vec<Option<Condition>> {
     let is = |index: usize, hedges: &[Hedge]| {
         let term = variable.terms.get(index)?;

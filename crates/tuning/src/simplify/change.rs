@@ -70,7 +70,8 @@ pub(crate) fn rule_size(rule: &rule::Rule) -> usize {
 
 struct Finder<'a> {
     model: &'a Model,
-    /// The position, the rule, and the parts of its antecedent if that is a conjunction of parts.
+    /// For each rule: its position, the rule itself, and the parts of its antecedent (`None` if the antecedent is not a
+    /// conjunction of parts).
     rules: Vec<(usize, &'a DerivedRule, Option<Vec<VariableCondition>>)>,
 }
 
@@ -85,7 +86,8 @@ struct Member<'a> {
 }
 
 impl Finder<'_> {
-    /// Adds the changes that remove a rule or a part of a rule, in case it has no effect.
+    /// Adds changes that remove one rule, or one part of a rule. Such a change keeps the outputs if what it removes has
+    /// no effect.
     fn drops(&self, changes: &mut Vec<Change>) {
         // The rules are visited in reverse order, so that the first of two equal rules is kept.
         for (slot, derived, parts) in self.rules.iter().rev() {
@@ -321,7 +323,7 @@ fn merged(
     }
 }
 
-/// The text of parts, in an order that is independent of the author's.
+/// The text of parts, in an order that does not depend on the order in which the author wrote them.
 fn text(parts: &[VariableCondition]) -> String {
     let mut texts: Vec<String> = parts
         .iter()

@@ -19,7 +19,7 @@ use fuzzy::{
 use change::{Change, DerivedRule, RuleSlots, changes, rule_size};
 use reference::ReferenceOutputs;
 
-/// Values that differ by at most this share of the output's range are equal.
+/// Values that differ by at most this share of the output's range count as equal.
 pub const EQUAL_TOLERANCE: f64 = 1e-12;
 
 /// The maximum number of rules of a rule set to simplify: the time grows faster than the square of their number.
@@ -29,7 +29,7 @@ pub const MAX_RULES: usize = 1_000;
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct SimplifySettings {
-    /// The largest allowed difference of an output, in its unit; `None` is [`EQUAL_TOLERANCE`].
+    /// The largest allowed difference of an output, in its unit; if `None`, [`EQUAL_TOLERANCE`] applies.
     pub tolerance: Option<f64>,
     /// Whether to compare at the rows only. Elsewhere the outputs may then differ arbitrarily.
     pub rows_only: bool,
@@ -256,8 +256,8 @@ fn total_size(slots: &RuleSlots) -> usize {
 
 /// Applies the changes that do not change any output, largest reduction first.
 fn without_difference(model: &Model, reference: &mut ReferenceOutputs, slots: &mut RuleSlots) {
-    // A change that failed would fail again, because the changes applied meanwhile do not affect the outputs. Before
-    // the loop ends, all failed changes are tried once more.
+    // A change that failed is not tried again at once: the changes applied meanwhile do not affect the outputs, so
+    // it would most likely fail again. Before the loop ends, all failed changes are tried once more.
     let mut failed: HashSet<String> = HashSet::new();
     loop {
         let is_complete = failed.is_empty();
@@ -284,7 +284,7 @@ fn without_difference(model: &Model, reference: &mut ReferenceOutputs, slots: &m
 }
 
 /// Applies changes that reduce the number of rules or inputs, until every further change would exceed the tolerance.
-/// The change with the smallest difference per removed proposition is always next.
+/// The change with the smallest difference per removed proposition is always applied next.
 fn within_tolerance(model: &Model, reference: &mut ReferenceOutputs, slots: &mut RuleSlots) {
     let mut failed: HashSet<String> = HashSet::new();
     loop {

@@ -10,7 +10,7 @@ use fuzzy::{
 
 use super::{Difference, SimplifyError};
 
-/// The number of points that are evaluated at once; these are enough to reject most candidates.
+/// The number of points that are evaluated at once; one such chunk is enough to reject most candidates.
 const CHUNK: usize = 4096;
 
 /// The maximum number of points that are tried first, because earlier candidates failed at them.
@@ -157,8 +157,9 @@ impl ReferenceOutputs {
         self.outcomes.get(row * self.outputs.len() + output)
     }
 
-    /// Updates `worst`, the largest difference so far: the difference divided by the tolerance, the row, the output, and the
-    /// new value. Returns as the error the first row with a difference above the tolerance or with another kind of outcome.
+    /// Updates `worst` if a difference is larger. `worst` contains the largest difference so far, divided by the
+    /// tolerance, and its row, its output, and the new value of the output. If a row has a difference above the
+    /// tolerance, or an outcome of another kind than before, the first such row is returned as the error.
     fn worst(
         &self,
         rows: impl Iterator<Item = usize>,

@@ -55,7 +55,7 @@ pub(crate) fn interval(
             })?)
         }
         Statistic::Rate => {
-            // The influence of each part on the slope.
+            // The half width follows from the influence of each part on the slope.
             let middle_s = mean(&|t_s, part| part.weight() * t_s)?.mean;
             let level = of_mean()?.mean;
             let squares = mean(&|t_s, part| part.weight() * (t_s - middle_s).powi(2))?.mean;
@@ -67,8 +67,9 @@ pub(crate) fn interval(
             around(influence.half_width)
         }
         Statistic::Percentile(percent) => {
-            // The method of Woodruff (1952): an interval of the share of values below the percentile gives two
-            // percentages, whose percentiles are the ends.
+            // The method of Woodruff (1952): the ends of an interval for the share of values below the
+            // percentile are two percentages. The percentiles at these two percentages are the ends of the
+            // result.
             let below = mean(&|_, part| match part.mean() {
                 Some(value) if value < known.value => part.weight(),
                 _ => 0.0,

@@ -10,8 +10,8 @@ use fuzzy::{
 use super::Mistakes;
 use crate::profile::{CauseWords, ProfileInput};
 
-/// The maximum length of a brief in bytes. With the level and the elevated risk before it, it fits into a message of 50
-/// characters.
+/// The maximum length of a brief in bytes. Such a brief fits into a message of 50 characters together with the level
+/// and the elevated risk that precede it.
 const LONGEST_BRIEF: usize = 20;
 
 /// The placeholders that a text may contain in braces.

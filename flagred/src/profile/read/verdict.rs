@@ -113,7 +113,8 @@ pub(super) fn level(
     }
 }
 
-/// The number for an example of a mapping: the number that the author wrote in place of the mapping, or else `other`.
+/// The number to show in an example of a mapping: the number that the author wrote in place of the mapping, or `other`
+/// if the author did not write a number.
 fn number_or<'n>(node: &'n Node, other: &'n str) -> &'n str {
     node.as_number_text().unwrap_or(other)
 }

@@ -20,9 +20,9 @@ struct Cuts<'a> {
 
 impl Curves {
     /// Fills `workspace.cuts` with the cuts of the aggregated set between `from` and `to`, in ascending order: the
-    /// ends, kinks and steps. Returns whether all of them are known. They are not if a term is a formula or the memory
-    /// is exhausted. A kink may also be missed if curves meet twice between two cuts; the integration then takes longer
-    /// but is equally accurate.
+    /// ends, kinks and steps. Returns whether all of them are known. Some are unknown if a term is a formula or the
+    /// memory is exhausted. A kink may also be missed if curves meet twice between two cuts; the integration then takes
+    /// longer but is equally accurate.
     pub(super) fn kinks(
         &self,
         strengths: Strengths<'_>,
@@ -132,7 +132,7 @@ impl Cuts<'_> {
     fn each_stretch(&mut self, mut visit: impl FnMut(&mut Self, (f64, f64))) {
         for i in 1..self.cuts.len() {
             if let (Some(&a), Some(&b)) = (self.cuts.get(i - 1), self.cuts.get(i)) {
-                // Positions just inside the interval, beyond a step at one of its ends.
+                // Both positions are just inside the interval, so that a step at one of its ends has no effect.
                 let inside = INSIDE * (b - a);
                 self.between = (a.next_up().max(a + inside), b.next_down().min(b - inside));
                 visit(self, (a, b));
@@ -149,8 +149,8 @@ impl Cuts<'_> {
         }
     }
 
-    /// Adds a cut where a function changes its sign, if it does. `is_line` states whether the function is a straight
-    /// line.
+    /// Adds a cut at the position where a function changes its sign, if there is such a position. `is_line` states
+    /// whether the function is a straight line.
     fn at_sign_change(&mut self, f: impl Fn(f64) -> f64, is_line: bool) {
         let (a, b) = self.between;
         let (fa, fb) = (f(a), f(b));

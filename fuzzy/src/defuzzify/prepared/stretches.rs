@@ -146,8 +146,8 @@ pub(super) fn knots(flank: &Flank, cuts: &[f64], measure: Measure) -> Option<Vec
         .collect();
     open.reverse();
     while let Some((a, b)) = open.pop() {
-        // The interval is not split at the middle, where the error of a symmetric kink would
-        // cancel.
+        // Splitting at the middle is avoided, because the error of a symmetric kink would cancel
+        // there.
         let middle = a + 0.43 * (b - a);
         let (whole, left, right) = (integral(a, b), integral(a, middle), integral(middle, b));
         let halves = left.0 + right.0;

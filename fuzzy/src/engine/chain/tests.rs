@@ -70,7 +70,8 @@ rules: [IF level IS any THEN need IS by_level AND pump IS by_need]
     );
     assert_eq!(values(&engine, &[6.0]), [Some(2.0), Some(26.0)]);
     assert!(!engine.evaluate(&[6.0]).unwrap()[1].clamped);
-    // The value of a Takagi-Sugeno output is not clamped, but it is clamped as an input of a rule.
+    // The value of a Takagi-Sugeno output is not clamped; but if a rule reads the output, the value that it reads is
+    // clamped.
     assert_eq!(values(&engine, &[2.0]), [Some(6.0), Some(42.0)]);
     let outcomes = engine.evaluate(&[2.0]).unwrap();
     assert_eq!((outcomes[0].clamped, outcomes[1].clamped), (false, true));
@@ -330,7 +331,7 @@ proptest! {
     }
 }
 
-/// The rule that raises the fan most reads the comfort; the rule about comfort reads the heat.
+/// The rule that raises the fan most reads the comfort. The rule that determines the comfort reads the heat.
 #[test]
 fn the_rule_that_raises_an_output_is_found_through_the_outputs_it_reads() {
     let engine = engine(FAN);

@@ -27,7 +27,7 @@ mod formula;
 mod stage;
 mod vertices;
 
-/// The maximum number of parts of the inputs that are evaluated for each end of an output.
+/// The maximum number of boxes that are evaluated for each end of an output. A box is a part of the input intervals.
 const MAX_BOXES: usize = 400;
 
 /// The number of steps of integrations after which the inputs are not divided further. It bounds the time for sets of many
@@ -158,13 +158,13 @@ struct EndSearch<'s> {
     inner: Vec<Option<Interval>>,
 }
 
-/// A part of the inputs.
+/// A part of the input intervals: for each input, an interval inside the given one.
 #[derive(Debug, Clone)]
 struct InputBox {
     inputs: Vec<Interval>,
     known: OutputBounds,
-    /// The bound of this part at the end that is searched for, as [`IntervalEnd::of`] returns it. The part with the
-    /// largest value is divided first.
+    /// The result of [`IntervalEnd::of`] for the bounds of the output over this box, at the end that is searched
+    /// for. The box with the largest value is divided first.
     urgency: f64,
     scores: Vec<f64>,
 }
@@ -197,7 +197,8 @@ enum IntervalEnd {
 }
 
 impl IntervalEnd {
-    /// Returns how far out this end of an interval is: the upper end, or the negated lower end.
+    /// Returns a number that is larger the farther out this end of an interval is: the upper end, or the negated lower
+    /// end.
     fn of(self, values: Option<Interval>) -> f64 {
         match (values, self) {
             (None, _) => f64::NEG_INFINITY,
@@ -224,9 +225,9 @@ impl Engine {
     /// Evaluates inputs of which only intervals are known, in the order of the model, and returns for each output an
     /// interval that contains every value for inputs inside these intervals.
     ///
-    /// The interval is never narrower than that of the values that occur. It is usually at most a hundredth wider;
-    /// with many uncertain inputs, and with activation methods, maxima or `samples`, it may be much wider. This prepares
-    /// the evaluation each time: in loops use [`Engine::enclosure`].
+    /// The interval is never narrower than the interval of the values that occur. It is usually at most a hundredth
+    /// wider; with many uncertain inputs, and with activation methods, maxima or `samples`, it may be much wider. This
+    /// prepares the evaluation each time: in loops use [`Engine::enclosure`].
     ///
     /// # Errors
     /// Fails like [`Engine::evaluate`], and if an end of an interval is not finite or the ends are in the wrong order.
@@ -258,7 +259,7 @@ impl Engine {
 }
 
 impl Enclosure<'_> {
-    /// Works like [`Engine::evaluate_interval`], without preparing the evaluation.
+    /// Works like [`Engine::evaluate_interval`], but does not prepare the evaluation again.
     ///
     /// # Errors
     /// Fails like [`Engine::evaluate_interval`].
@@ -354,7 +355,7 @@ impl EndSearch<'_> {
         }
     }
 
-    /// Evaluates the middle of a part of the inputs, and its corners unless there are too many.
+    /// Evaluates the middle of a box of inputs, and its corners unless there are too many.
     fn corners(&mut self, inputs: &[Interval]) {
         let mut point: Vec<f64> = inputs.iter().map(|input| input.middle()).collect();
         self.point(&point);
@@ -377,7 +378,7 @@ impl EndSearch<'_> {
         }
     }
 
-    /// Returns the bounds of an output over a part of the inputs.
+    /// Computes the bounds of an output over a box of inputs.
     fn part(&mut self, output: usize, end: IntervalEnd, inputs: Vec<Interval>) -> InputBox {
         let mut scores = vec![0.0; inputs.len()];
         for (stage, scratch) in self.enclosure.stages.iter().zip(&mut self.stages) {

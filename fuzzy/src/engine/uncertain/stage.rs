@@ -22,7 +22,8 @@ const NEAR: f64 = 1e-3;
 /// A stage that is evaluated with intervals as inputs.
 #[derive(Debug, Clone)]
 pub(super) struct RangedStage {
-    /// The indices in the model of the outputs that the stage reads. Their values follow those of the inputs.
+    /// The indices in the model of the outputs that the stage reads. The values of these outputs are stored after the
+    /// values of the inputs.
     reads: Vec<usize>,
     /// The indices in the model of the outputs of the stage.
     outputs: Vec<usize>,
@@ -51,7 +52,7 @@ struct RangedOutput {
     first: usize,
     /// The offset of each term's firing strengths from the first one.
     offsets: Vec<usize>,
-    /// The constant, linear function or formula of each term; empty unless it is a Takagi-Sugeno output.
+    /// The constant, linear function or formula of each term; empty unless the output is a Takagi-Sugeno output.
     numbers: Vec<MembershipFunction>,
     when_no_rule_fires: NoRuleFires,
     range: Interval,
@@ -140,9 +141,9 @@ impl RangedStage {
         &self.outputs
     }
 
-    /// Adds the corners of the terms that the rules of an output read. This requires that the firing strengths are linear
-    /// along each input between corners, and that the strengths of a term are summed; otherwise returns `None`. Returns an
-    /// upper bound of the total strength that is rounded to 0, divided by the least weight of a rule.
+    /// Adds the corners of the terms that the rules of an output read, and returns an upper bound of the total strength
+    /// that is rounded to 0, divided by the least weight of a rule. `None` unless the firing strengths are linear along
+    /// each input between corners, and the strengths of a term are summed.
     pub(super) fn linear(&self, output: usize, corners: &mut [Vec<f64>]) -> Option<f64> {
         let output = self.own.get(output)?;
         let strengths = output.first..output.first + output.offsets.last()?;
@@ -222,7 +223,7 @@ impl RangedStage {
         }
     }
 
-    /// Increases the score of each input by how much the degrees of its terms vary.
+    /// Increases the score of each input by the widths of the degree intervals of its terms.
     pub(super) fn scores(&self, scratch: &RangedScratch, scores: &mut [f64]) {
         for (literal, (low, high)) in self.literals.iter().zip(&scratch.degrees) {
             if let Some(score) = scores.get_mut(literal.input) {
@@ -282,7 +283,7 @@ impl RangedStage {
         }
     }
 
-    /// Returns the bounds of the strength of a rule after the activation method of its block.
+    /// Returns the bounds of the strength of a rule after the activation method of its block was applied.
     fn activated(&self, index: usize, rule: &RangedRule, of_rules: &[(f64, f64)]) -> (f64, f64) {
         let Some(&(low, high)) = of_rules.get(index) else {
             return (0.0, 1.0);

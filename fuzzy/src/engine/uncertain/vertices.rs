@@ -84,7 +84,7 @@ impl EndSearch<'_> {
                 let coverage = outcome.value().map_or(0.0, |_| outcome.coverage);
                 *least = least.min(coverage);
             }
-            // The next vertex.
+            // Moves to the next vertex.
             let mut is_last = true;
             for ((place, x), along) in place.iter_mut().zip(&mut point).zip(&grid) {
                 *place = (*place + 1) % along.len();

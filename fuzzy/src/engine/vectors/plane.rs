@@ -1,10 +1,10 @@
-//! Single evaluations of small rule sets with two inputs, if at most two terms of each input overlap. This is the most
-//! common kind.
+//! Single evaluations of small rule sets with two inputs, if at most two terms of each input overlap. This is the
+//! most common kind of rule set.
 //!
-//! The intervals of the two inputs divide their plane into regions. In each region two terms of either input can be
-//! above 0, so an evaluation visits four cells of the table, and their rules act on at most four firing strengths. All
-//! data of a region is contiguous and in the order of vectors. The operations and their order are those of the table,
-//! so the results are bitwise equal.
+//! The intervals of the two inputs divide their plane into regions. In each region two terms of either input can
+//! be above 0, so an evaluation visits four cells of the table, and their rules act on at most four firing
+//! strengths. All data of a region is contiguous and in the order of vectors. The operations and their order are
+//! the same as in the table, so the results are bitwise equal.
 
 use alloc::vec::Vec;
 
@@ -16,7 +16,7 @@ use crate::table::operators::{larger, smaller};
 use crate::table::results::{InputFlags, number_of};
 use crate::table::{ClosedForm, Outcome, Output, Results};
 
-/// A compiled rule set.
+/// A rule set compiled to regions of the plane of its two inputs.
 #[derive(Debug, Clone)]
 pub(in super::super) struct Plane {
     pub(super) level: Level,
@@ -42,7 +42,7 @@ pub(super) struct PlaneInput {
     pub(super) cuts: Cuts,
 }
 
-/// The numbers of a region: one interval of each input.
+/// The numbers of a region, which is one interval of each input.
 ///
 /// There are four lines: two of the first input, then two of the second. There are four cells, in this order: the first
 /// line of the first input with the first of the second, the second with the first, the first with the second, and the

@@ -102,7 +102,7 @@ struct Numbers<'t> {
 }
 
 impl Numbers<'_> {
-    /// Returns the region of four lines and four cells; each cell has a flag that is set if it acts.
+    /// Returns the region with these lines and cells. The flag of a cell states whether it acts on a firing strength.
     fn region(&self, lines: [Line; 4], cells: [(Action, bool); 4]) -> Option<Region> {
         let acting = cells.iter().filter(|(_, acts)| *acts);
         let mut slots: Vec<u32> = acting.map(|(action, _)| action.strength).collect();

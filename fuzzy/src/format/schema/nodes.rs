@@ -99,7 +99,8 @@ pub(super) fn any_of(description: &str, options: Vec<Node>) -> Node {
     about(description, [("anyOf", Node::list(options))])
 }
 
-/// Returns the schema of a mapping of names that the author chooses.
+/// Returns the schema of a mapping whose keys are names that the author chooses. `of` is the name of the schema of the
+/// values.
 pub(super) fn named(description: &str, of: &str) -> Node {
     let entries = [
         ("type", Node::text("object")),

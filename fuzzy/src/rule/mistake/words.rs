@@ -225,7 +225,7 @@ pub(super) fn found_here(rest: &str) -> &str {
     rest.get(..length).unwrap_or(rest)
 }
 
-/// Returns the input of the last condition of a text: `x` of `IF x IS low OR`.
+/// Returns the input of the last condition of a text, such as `x` for `IF x IS low OR`.
 pub(super) fn last_input(before: &str) -> Option<&str> {
     let words = before.split_whitespace().rev();
     let mut owners = words.clone().zip(words.skip(1));

@@ -26,7 +26,8 @@ impl SetArrays<'_> {
                 before += area;
                 continue;
             }
-            // The cumulative area from the left end of the section, and from its right end.
+            // The area of the set up to the left end, and up to the right end, of the part of the section that has not
+            // been visited.
             let (mut left, mut right) = (before, before + area);
             let mut value = None;
             self.parts(section, strengths, |part| {
@@ -44,13 +45,14 @@ impl SetArrays<'_> {
                     right -= part.area;
                 }
             });
-            // Because of rounding, no part may contain the value, which is then between two parts.
+            // Because of rounding, it may happen that no part contains the value, because it is between two parts.
             return value.or(Some(section.to));
         }
         self.sections.last().map(|section| section.to)
     }
 
-    /// Returns the position in a part up to which the part, from its lower end, has the given area.
+    /// Returns the position in a part at which the area, counted from the lower end of the part, reaches the given
+    /// area.
     fn position_of_area(&self, part: &SetSegment<'_>, area: f64) -> f64 {
         let units = area / part.degree;
         let Some(flank) = part.flank else {
@@ -99,7 +101,7 @@ impl SetArrays<'_> {
         x
     }
 
-    /// Returns the bisector of a sum, for which the areas of the terms add up.
+    /// Returns the bisector of a set that is aggregated by the sum. In such a set, the areas of the terms add up.
     pub(super) fn bisector_of_sum(&self, output: &Output, strengths: &[f64]) -> Option<f64> {
         let sum = |of: &dyn Fn(&Flank, f64) -> f64| {
             let mut sum = 0.0;
@@ -112,7 +114,7 @@ impl SetArrays<'_> {
             }
             sum
         };
-        let whole = sum(&|flank, strength| self.alone(flank, strength).0);
+        let whole = sum(&|flank, strength| self.of_single_flank(flank, strength).0);
         if whole <= 0.0 {
             return None;
         }
@@ -137,7 +139,7 @@ impl SetArrays<'_> {
         if x <= flank.from {
             return 0.0;
         }
-        let whole = self.alone(flank, strength).0;
+        let whole = self.of_single_flank(flank, strength).0;
         if x >= flank.to {
             return whole;
         }

@@ -50,8 +50,8 @@ impl SetArrays<'_> {
     }
 }
 
-/// The relative difference from the maximum up to which degrees count as equal: two rules that fire equally may differ
-/// by rounding.
+/// The relative difference from the maximum up to which degrees count as equal: the degrees of two rules that fire
+/// equally may differ by rounding.
 const TIE: f64 = 1e-12;
 
 /// The values of a section at which terms are highest: from its lower end to `left`, from `right` to its upper end, and

@@ -8,7 +8,8 @@ use fuzzy::{
 
 use super::{number, quoted, template::TemplateValues};
 
-/// For each rule, the cause that a pilot reads. If the cause is another output, also the rules that conclude this output.
+/// For each rule, the cause that is reported to the pilot. If this cause is the value of another output, also the rules
+/// that conclude that output.
 #[derive(Default)]
 pub(super) struct Causes {
     motor_cause: bool,

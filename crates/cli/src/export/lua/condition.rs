@@ -13,7 +13,7 @@ pub(super) struct Expressions<'m> {
     pub(super) model: &'m Model,
     /// The operators of the current rule.
     pub(super) operators: Operators,
-    /// The terms in use, by the index of the variable (inputs, then outputs) and of the term.
+    /// The terms that the expressions use, by the index of the variable (inputs, then outputs) and of the term.
     pub(super) used: Vec<(usize, usize)>,
     functions: Vec<&'static str>,
 }

@@ -25,10 +25,10 @@ pub(super) struct Script {
     values: Vec<(String, String)>,
     pub(super) observe: Vec<String>,
     pub(super) read: Vec<String>,
-    /// The functions over lists of motors in use.
+    /// The functions over lists of motors that the script uses.
     functions: Vec<&'static str>,
     lists: Vec<&'static str>,
-    /// The indices of the efforts in use.
+    /// The indices of the efforts that the script uses.
     efforts: Vec<usize>,
     noise: bool,
 }
@@ -96,7 +96,7 @@ impl Script {
             Observed::HighSide => "high_side",
             _ => "command",
         };
-        // The smallest distance to the upper limit is that of the highest motor, and needs no list.
+        // The motor with the highest command has the smallest distance to the upper limit, so no list is needed.
         if (channel.observed, channel.motors) == (Observed::HighSide, Motors::Min) {
             self.uses("highest_of");
             let room = "sum and 1 - highest_of(command) or nil".to_owned();

@@ -174,7 +174,7 @@ fn fires_of(
     Ok(fires)
 }
 
-/// Returns the indices of the outputs that the risk depends on, and of the risk.
+/// Returns the indices of the risk and of all outputs that it depends on.
 fn needed(model: &Model, risk: usize) -> Vec<usize> {
     let mut needed = vec![risk];
     let mut next = 0;

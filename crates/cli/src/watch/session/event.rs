@@ -11,7 +11,7 @@ use serde::{Serialize, Serializer};
 
 use super::{Source, UntrustedPacket};
 
-/// An event of a watch. Serialised, it is a line of `--jsonl`; `docs/json.md` describes its fields.
+/// An event of a watch. Its serialised form is a line of `--jsonl`; `docs/json.md` describes the fields.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 #[schemars(inline)]
 #[serde(tag = "event", rename_all = "snake_case")]
@@ -129,7 +129,8 @@ pub(crate) enum Event {
     /// A finding ended. Its line also contains the finding as text.
     #[serde(skip)]
     Ended { finding: Finding },
-    /// A flight, or the observed part of it, is over. The name of its line depends on how it ended.
+    /// A flight, or the observed part of it, is over. The kind of its line in the output depends on how the flight
+    /// ended.
     #[serde(skip)]
     Over { end: End, flown: FlightSummary },
 }

@@ -13,7 +13,7 @@ pub(super) struct ReceivedSample {
     /// Whether the vehicle reports that it is in the air.
     pub(super) in_air: Option<bool>,
     pub(super) pulses: Pulses,
-    /// The signals of the profile, in its order; NaN is unknown.
+    /// The signals of the profile, in the order of the profile; NaN means unknown.
     pub(super) signals: Vec<f64>,
 }
 

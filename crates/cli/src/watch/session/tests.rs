@@ -18,7 +18,7 @@ mod rates;
 mod signals;
 mod trust;
 
-/// A session, the vehicle's end of the link, and the clock of both.
+/// A session, a simulated vehicle at the other end of the link, and the clock that both share.
 pub(crate) struct Bench<'e> {
     pub(crate) session: Session<'e>,
     vehicle: Sender,

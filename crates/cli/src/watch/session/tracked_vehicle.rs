@@ -79,7 +79,7 @@ pub(crate) struct VehicleView<'a> {
     /// The share of the vehicle's packets that were lost.
     pub(crate) lost_share: f64,
     pub(crate) setup: Option<&'a Setup>,
-    /// Effective commands; NaN is unknown.
+    /// The effective commands, where NaN means unknown.
     pub(crate) motors: &'a [f64],
     pub(crate) margin: Option<f64>,
     pub(crate) spread: Option<f64>,
@@ -224,7 +224,7 @@ impl TrackedVehicle {
         if self.watch.as_ref().is_some_and(|watch| watch.is_flying) && !self.telemetry.is_in_air() {
             return None;
         }
-        // Late parameters are not awaited, but they are used.
+        // The watch does not wait for late parameters, but it uses them when they arrive.
         let is_due = done && (self.telemetry.take_parameters_changed() || !self.set_up_tried);
         if !is_due && !is_urgent {
             return None;

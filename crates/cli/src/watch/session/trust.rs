@@ -1,5 +1,5 @@
-//! Which senders the watch trusts: candidates for the vehicle to follow, and other senders that use the ids of the
-//! vehicle.
+//! Decides which senders the watch trusts: finds candidates for the vehicle to follow, and doubts packets from
+//! other senders that use the ids of the vehicle.
 
 use std::net::SocketAddr;
 
@@ -10,13 +10,14 @@ use serde::Serialize;
 /// The address of a packet's sender; `None` on a serial port, which has one sender.
 pub(crate) type Source = Option<SocketAddr>;
 
-/// Number of consistent heartbeats that make a candidate the vehicle to follow.
+/// Number of consistent heartbeats after which a candidate becomes the vehicle to follow.
 const BEATS: u32 = 3;
-/// Maximum time between two of these heartbeats, in seconds.
+/// Maximum time between two consistent heartbeats of a candidate, in seconds.
 const BEAT_WAIT_S: f64 = 5.0;
-/// Number of motor commands that confirm a candidate as a vehicle, while the vehicle that is followed sends none.
+/// Number of motor commands that, after enough heartbeats, confirm a candidate as a vehicle, so that it replaces a
+/// followed vehicle that is not yet confirmed.
 const COMMANDS: u32 = 2;
-/// Maximum number of candidates: at least one per system.
+/// Maximum number of candidates: enough for one per system id.
 const CANDIDATES: usize = 256;
 
 const SERVO_OUTPUT_RAW: u32 = 36;
@@ -26,11 +27,11 @@ const PARAM_VALUE: u32 = 22;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum UntrustedPacket {
-    /// The vehicle's autopilot, from another address.
+    /// A packet with the ids of the vehicle's autopilot, from another address.
     SecondSender,
-    /// A parameter from another component of the vehicle.
+    /// A packet with a parameter, from another component of the vehicle.
     OtherComponent,
-    /// A timestamp that jumps although the clock of the vehicle does not.
+    /// A packet with a timestamp that jumps although the clock of the vehicle does not jump.
     ClockJump,
 }
 
@@ -39,14 +40,14 @@ pub(crate) enum UntrustedPacket {
 pub(crate) struct UntrustedCounts {
     /// Packets with the ids of the vehicle's autopilot, from another address.
     pub(crate) second_sender: u64,
-    /// Parameters from other components.
+    /// Packets with parameters, from other components of the vehicle.
     pub(crate) other_component: u64,
-    /// Timestamps that jump although the clock of the vehicle does not.
+    /// Packets with timestamps that jump although the clock of the vehicle does not jump.
     pub(crate) clock_jumps: u64,
 }
 
 impl UntrustedCounts {
-    /// Adds to a count, and returns whether this is the first doubt of its kind.
+    /// Adds `count` packets of a kind that is not trusted, and returns whether they are the first of this kind.
     pub(super) fn add(&mut self, doubt: UntrustedPacket, count: u64) -> bool {
         let total = match doubt {
             UntrustedPacket::SecondSender => &mut self.second_sender,
@@ -84,7 +85,7 @@ struct Candidate {
     commands: u32,
 }
 
-/// The evidence for a candidate.
+/// The evidence that a candidate is a vehicle, weakest first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Evidence {
     None,
@@ -94,13 +95,13 @@ pub(super) enum Evidence {
     Commands,
 }
 
-/// Senders that may be a vehicle, while no vehicle is followed or the followed one is not yet
-/// confirmed.
+/// The senders that may be a vehicle. They are collected while no vehicle is followed, or while the
+/// followed vehicle is not yet confirmed.
 #[derive(Debug, Default)]
 pub(super) struct Candidates(Vec<Candidate>);
 
 impl Candidates {
-    /// Counts the motor commands of a candidate.
+    /// Counts a packet if it contains motor commands of a candidate.
     pub(super) fn take_message(&mut self, source: Source, packet: &Packet<'_>) {
         if packet.id != SERVO_OUTPUT_RAW || packet.component != 1 {
             return;

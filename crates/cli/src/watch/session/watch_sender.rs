@@ -1,4 +1,4 @@
-//! Messages of the watch to the vehicle's system, coordinated with other watches.
+//! Sends the messages of the watch to the vehicle's system, in coordination with other watches.
 
 use std::collections::VecDeque;
 
@@ -11,20 +11,20 @@ use crate::watch::messages;
 const GONE_S: f64 = 5.0;
 /// Minimum seconds between two reports that the watch starts or stops sending.
 const REPORT_INTERVAL_S: f64 = 5.0;
-/// Number of sent packets that are stored, to recognise those that a link returns.
+/// Number of sent packets that are stored to recognise packets that a link sends back.
 const ECHOES: usize = 16;
-/// Seconds within which PX4 may repeat, as if it were its own, the latest value that it received.
+/// Seconds within which PX4 may send the latest value that it received, as if the value were its own.
 const ECHO_S: f64 = 5.0;
-/// Maximum number of stored values, to recognise those that PX4 repeats.
+/// Maximum number of values that are stored to recognise values that PX4 sends again.
 const VALUES: usize = 32;
 /// Seconds to wait for another watch to send a text before this watch sends it.
 const TEXT_WAIT_S: f64 = 1.0;
-/// A text is not sent if another watch sent one on the same topic within this many seconds before.
+/// A text is not sent if another watch sent a text on the same topic at most this many seconds ago.
 const RECENT_TEXT_S: f64 = 2.0;
 /// Maximum number of delayed texts, and of texts received from other watches.
 const TEXTS: usize = 8;
 
-/// Sends the messages of the watch to the vehicle's system, and gives way to other watches.
+/// Sends the messages of the watch to the vehicle's system, unless another watch has precedence.
 pub(super) struct WatchSender {
     /// `None` if the watch only listens.
     sender: Option<Sender>,
@@ -54,7 +54,7 @@ struct DelayedText {
 struct OtherWatch {
     component: u8,
     received_s: f64,
-    /// Whether it has reported its running time. If not, only its values were received.
+    /// Whether the other watch has reported its running time. If not, only values were received from it.
     has_age: bool,
     goes_first: bool,
 }

@@ -4,10 +4,12 @@ use super::{HELP_NEGATIVE, RowCollector, problem};
 use crate::ReadError;
 
 const HELP_PULSES: &str = "name columns of fractions from 0 to 1 `motor1`..; divide percent by 100 first; for DShot see docs/flight-csv.md";
-/// The minimum median step of `t_s` between motor commands from which whole-number times count as milliseconds.
+/// Whole-number times in `t_s` count as milliseconds or microseconds if the median step between motor commands is at
+/// least this.
 const MIN_STEP_MS: f64 = 2.0;
 const MIN_STEPS: usize = 5;
-/// The minimum median step of `t_s` between motor commands from which whole-number times count as microseconds: 1 kHz.
+/// Whole-number times in `t_s` count as microseconds if the median step between motor commands is at least this (1000
+/// us, that is, 1 kHz).
 const MIN_STEP_US: f64 = 1000.0;
 
 impl RowCollector {
@@ -36,8 +38,9 @@ impl RowCollector {
         refused.or_else(|| backwards.or_else(of_clock).filter(|_| !is_ours))
     }
 
-    /// An error for a column whose cells are mostly not pulse widths, or mostly negative fractions: if it were accepted, the
-    /// motor would seem to be at a limit all the time. A few such cells count as damage. Also returns the first such cell.
+    /// An error for a column whose cells are mostly not pulse widths, or mostly negative fractions: if the column were
+    /// accepted, the motor would seem to be at a limit all the time. A few such cells count as damage. Also returns the
+    /// value of the first such cell.
     pub(in crate::csv) fn other_unit(&self) -> Option<(f64, ReadError)> {
         let mut columns = (1..).zip(&self.counts);
         let (number, counts) = columns.find(|(_, counts)| counts.outside > counts.known / 2)?;
@@ -50,8 +53,8 @@ impl RowCollector {
         Some((raw, problem(line, text, help)))
     }
 
-    /// An error for times that look like milliseconds or microseconds: whole numbers, with most steps between motor
-    /// commands at least 2.
+    /// An error for times that look like milliseconds or microseconds: whole numbers whose median step between
+    /// motor commands is at least 2.
     fn milliseconds(&self) -> Option<ReadError> {
         let times = self.commands.t_s();
         let steps = times.windows(2).map(|pair| pair[1] - pair[0]);

@@ -8,7 +8,7 @@ imbalance, imbalance_words = nil, nil -- the imbalance in %, and its kind
 unbalanced, or_unbalanced = nil, nil -- the unbalanced motor, and a second one that may be it instead
 weak, weak_motor, or_weak = nil, nil, nil -- the extra command of a weak motor in %, the motor, and a second one that may be it
 sinks = false
-local has_recovered = false
+local ok = false
 
 -- The weight of this call in an average.
 local function weight(known_s, constant_s)
@@ -115,10 +115,10 @@ function watch_balance()
   end
   learn(mean)
   local settled, learned = lately_s >= 5.0, trim_s >= 10.0
-  if risk_level == GOOD and not recovered_us and (not learned or settled and is_near(lately, trims, IMBALANCE_ABOVE / 2)) then
+  if risk_level == GOOD and not ok_us and (not learned or settled and is_near(lately, trims, IMBALANCE_ABOVE / 2)) then
     learn_trims(mean)
   end
-  has_recovered = settled and (learned and is_near(lately, trims, IMBALANCE_ABOVE / 2) or not learned and is_near(lately, nil, IMBALANCE_ABOVE))
+  ok = settled and (learned and is_near(lately, trims, IMBALANCE_ABOVE / 2) or not learned and is_near(lately, nil, IMBALANCE_ABOVE))
   local squares = 0.0
   for i = 1, motors do
     shifts[i] = lately[i] - trims[i]
@@ -165,7 +165,7 @@ end
 
 -- Whether all motors work as before the alarm; if no trims were learned before it, whether all motors work alike.
 function works_as_before()
-  return has_recovered
+  return ok
 end
 
 -- Forgets the trims, because a new flight may begin.
@@ -177,5 +177,5 @@ end
 
 function forget_balance()
   lately, at_zero, lately_s, load, load_s = {}, {}, 0.0, 0.0, 0.0
-  imbalance_us, weak_us, imbalance, weak, sinks, has_recovered = nil, nil, nil, nil, false, false
+  imbalance_us, weak_us, imbalance, weak, sinks, ok = nil, nil, nil, nil, false, false
 end

@@ -8,7 +8,7 @@ local lifted_us -- time since the motors last did not idle; nil if the land dete
 falls = false -- whether the motors idle in the air
 local since_high_us, unknown_us -- time since the risk was last high, and since it was last known
 
--- Resets the state after a flight or a gap. After a gap in the air, the trims are kept, and an alarm continues until the motors have recovered.
+-- Resets the state after a flight or a gap. After a gap in the air, the trims are kept, and an alarm lasts until recovery.
 function forget(is_gap)
   lifted_us = not is_gap and lifted_us or nil
   local was_alarm = is_gap and level_now() > GOOD
@@ -24,7 +24,7 @@ function forget(is_gap)
   forget_noise()
 -- @end
   stop_judging()
-  recovered_us = was_alarm and 0 or nil
+  ok_us = was_alarm and 0 or nil
 -- @if imbalance
   if not is_gap then
     forget_trims()
@@ -98,7 +98,7 @@ function fly()
   end
   since_high_us = since_high_us and later(since_high_us, held_us)
   unknown_us = unknown_us and later(unknown_us, held_us)
-  recovered_us = recovered_us and later(recovered_us, held_us)
+  ok_us = ok_us and later(ok_us, held_us)
   flown_us = flown_us and later(flown_us, held_us)
   lifted_us = lifted_us and later(lifted_us, held_us)
 -- @if if_missing
@@ -117,7 +117,7 @@ function fly()
       end
     else
       -- The vehicle may have landed during a gap.
-      recovered_us = nil
+      ok_us = nil
 -- @if imbalance
       forget_trims()
 -- @end
@@ -146,7 +146,7 @@ function fly()
 -- @end
   if not risk then
     if unknown_us and unknown_us > LONGEST_GAP_US then
-      recovered_us = level_now() > GOOD and unknown_us or nil
+      ok_us = level_now() > GOOD and unknown_us or nil
       stop_judging()
       unknown_us = nil
     end

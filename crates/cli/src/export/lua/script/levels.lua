@@ -143,18 +143,18 @@ local function lower(until_risk, risk)
   return until_risk and risk and min(until_risk, risk) or until_risk
 end
 
-recovered_us = nil -- after an alarm: how long the motors have worked as before it
+ok_us = nil -- after an alarm: how long the motors have worked as before it
 
 -- After an alarm, the level is GOOD again once the motors have worked as before it for the time after which a level is cleared.
-local function update_recovery()
-  local has_recovered = true
+local function check_recovery()
+  local ok = true
 -- @if imbalance
-  has_recovered = works_as_before()
+  ok = works_as_before()
 -- @end
-  if (risk_level > GOOD or recovered_us) and not has_recovered then
-    recovered_us = 0
-  elseif risk_level == GOOD and recovered_us and recovered_us >= CLEAR_AFTER_US then
-    recovered_us = nil
+  if (risk_level > GOOD or ok_us) and not ok then
+    ok_us = 0
+  elseif risk_level == GOOD and ok_us and ok_us >= CLEAR_AFTER_US then
+    ok_us = nil
   end
 end
 
@@ -175,7 +175,7 @@ function judge(risk, takes_off)
     risk_level, held_at = held, clock_us
     is_open = held > GOOD
   end
-  update_recovery()
+  check_recovery()
 end
 
 function stop_judging()

@@ -8,7 +8,7 @@ function level_now()
 -- @if imbalance
   level = (imbalance or weak) and max(level, WARN) or level
 -- @end
-  return recovered_us and max(level, WARN) or level
+  return ok_us and max(level, WARN) or level
 end
 
 -- The cause in two parts; if there is no space for the second part, the first part is used alone.

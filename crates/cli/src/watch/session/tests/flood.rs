@@ -68,7 +68,7 @@ impl Link<'_> {
         self.stream.end();
     }
 
-    /// Sends a number of packets, one in [`SHARE`] of them from the hovering vehicle.
+    /// Sends packets; one in [`SHARE`] of them comes from the hovering vehicle.
     fn flood(
         &mut self,
         from_s: f64,
@@ -178,7 +178,8 @@ fn a_hundred_million_packets_of_others_do_not_lose_the_vehicle() {
     flood(100_000_000);
 }
 
-/// Flips bits; loses, adds and cuts bytes. Nothing panics, and bytes that are not packets cause no text.
+/// Damages packets by flipping bits and by removing, adding and truncating bytes. Nothing panics, and bytes that are
+/// not packets cause no text.
 fn mutate(packets: usize) {
     let estimator = estimator();
     let mut link = link(&estimator);

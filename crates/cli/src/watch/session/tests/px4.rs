@@ -199,7 +199,8 @@ fn a_vehicle_found_in_the_air_has_a_risk_before_its_parameters_arrive() {
     assert!(took_off.len() == 1 && took_off[0] < 100.2, "{took_off:?}");
 }
 
-/// Limits that arrive in flight change the commands of the whole flight: the verdict is the one for the right limits.
+/// Limits that arrive in flight change the commands of the whole flight: the verdict is the same as if these limits had
+/// been known from the start.
 #[test]
 fn limits_that_arrive_in_the_air_apply_to_the_whole_flight() {
     let estimator = estimator();

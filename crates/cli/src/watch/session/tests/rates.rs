@@ -155,7 +155,7 @@ fn the_station_that_slows_the_motor_commands_is_named_once() {
     );
 }
 
-/// Wherever the rate changes within a measuring interval, the reported rate is the one after the change.
+/// Wherever the rate changes within a measuring interval, the reported rate is the rate after the change.
 #[test]
 fn the_reported_rate_is_measured_after_the_drop() {
     let estimator = estimator();

@@ -1,4 +1,4 @@
-//! Which senders the watch trusts, and how it behaves beside another watch.
+//! Tests of which senders the watch trusts, and of its behaviour when another watch is present.
 
 use flagred_flightlog::mavlink::dialect::NAMED_VALUE_FLOAT_DATA;
 
