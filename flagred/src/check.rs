@@ -8,7 +8,7 @@ use alloc::{
 use core::ops::Range;
 
 use fuzzy::{
-    Findings, Model,
+    Engine, Findings, Model,
     check::AcceptedFindings,
     diagnostic::{Diagnostic, Severity, nearest, suggest},
     model::AllowedFinding,
@@ -183,6 +183,20 @@ pub fn outvoted(profile: &fuzzy::Source, estimator: &Estimator) -> Findings {
 struct ValuePositions<'t>(&'t Node);
 
 impl ValuePositions<'_> {
+    /// The span of a word within the value at a path of keys, or else that of the value.
+    fn word(&self, path: &[&str], word: &str) -> Range<usize> {
+        fn find(node: &Node, word: &str) -> Option<Range<usize>> {
+            match &node.value {
+                Value::Scalar(scalar) => (scalar.text == word).then(|| node.span.clone()),
+                Value::List(items) => items.iter().find_map(|item| find(item, word)),
+                Value::Mapping(pairs) => pairs.iter().find_map(|(_, value)| find(value, word)),
+            }
+        }
+        let node = path.iter().try_fold(self.0, |node, key| node.child(key));
+        node.and_then(|node| find(node, word))
+            .unwrap_or_else(|| self.of(path))
+    }
+
     /// The span of the value at a path of keys; if it is a default, the span of the deepest key that is written.
     fn of(&self, path: &[&str]) -> Range<usize> {
         let mut node = self.0;
@@ -218,6 +232,59 @@ fn compile(
         Ok(estimator) => return Some(estimator),
         Err(error) => error,
     };
+    let mut errors = Vec::from([error]);
+    if let Some(engine) = engine {
+        errors.extend(other_names(profile, engine, &errors[0]));
+    }
+    for error in &errors {
+        found.push(misfit(error, profile, engine, at));
+    }
+    None
+}
+
+/// Returns the errors about names of inputs that remain if the first error is about another name.
+fn other_names(profile: &Profile, engine: &Engine, first: &EstimatorError) -> Vec<EstimatorError> {
+    let is_about_names = matches!(
+        first,
+        EstimatorError::NoSuchOutput { .. }
+            | EstimatorError::NoSuchInput { .. }
+            | EstimatorError::NoSource { .. }
+    );
+    if !is_about_names {
+        return Vec::new();
+    }
+    let inputs: Vec<&str> = engine.input_names().collect();
+    let is_stray = |name: &&str| !inputs.contains(name) && !profile.is_part(name);
+    let named = profile.inputs.iter().map(|input| input.name.as_str());
+    let stray: Vec<&str> = named.clone().filter(is_stray).collect();
+    // A misspelt input of the profile is probably the source of the input with a similar name.
+    let is_meant = |name: &str| {
+        let mut stray = stray.iter();
+        stray.any(|stray| nearest(stray, inputs.iter().copied()) == Some(name))
+    };
+    let missing = inputs
+        .iter()
+        .filter(|name| named.clone().all(|known| known != **name));
+    let missing = missing.filter(|name| !is_meant(name));
+    let missing = missing.map(|input| EstimatorError::NoSource {
+        input: (*input).into(),
+    });
+    let stray = stray.iter().map(|input| EstimatorError::NoSuchInput {
+        input: (*input).into(),
+    });
+    stray
+        .chain(missing)
+        .filter(|error| error != first)
+        .collect()
+}
+
+/// Returns the finding for an error of [`Estimator::with_engine`].
+fn misfit(
+    error: &EstimatorError,
+    profile: &Profile,
+    engine: Option<&Engine>,
+    at: &ValuePositions,
+) -> Diagnostic {
     let of_output = |output: &str| {
         let mut others = profile.other_risks.iter();
         match others.find(|risk| risk.output == output) {
@@ -225,7 +292,7 @@ fn compile(
             None => Vec::from(["output"]),
         }
     };
-    let (code, place, help) = match &error {
+    let (code, place, help) = match error {
         EstimatorError::NoSource { input } => (
             "missing-input",
             at.of(&["inputs"]),
@@ -233,14 +300,28 @@ fn compile(
         ),
         EstimatorError::NoSuchInput { input } => {
             let inputs = engine.iter().flat_map(|engine| engine.input_names());
-            let help = suggest(input, inputs).unwrap_or_else(|| "remove it".into());
+            let help = match suggest(input, inputs) {
+                Some(help) if help.starts_with("did you mean") => help,
+                _ => format!("remove `{input}`, or add an input with this name to the rule set"),
+            };
             ("unknown-input", at.of(&["inputs", input]), help)
         }
         EstimatorError::NoSuchOutput { output } => {
             let outputs = engine.iter().flat_map(|engine| engine.output_names());
-            let help = suggest(output, outputs)
-                .unwrap_or_else(|| "name the output with `output: NAME`".into());
-            ("unknown-output", at.of(&of_output(output)), help)
+            let outputs: Vec<&str> = outputs.collect();
+            let place = of_output(output);
+            match (place.as_slice(), outputs.as_slice()) {
+                (["output"], [only]) if at.0.child("output").is_none() => (
+                    "unknown-output",
+                    at.of(&["rules"]),
+                    format!("add `output: {only}`"),
+                ),
+                _ => {
+                    let help = suggest(output, outputs.iter().copied())
+                        .unwrap_or_else(|| "name the output with `output: NAME`".into());
+                    ("unknown-output", at.of(&place), help)
+                }
+            }
         }
         EstimatorError::NoPercentage { output, .. } => (
             "not-a-percentage",
@@ -268,8 +349,7 @@ fn compile(
             "`flagred check` shows what is wrong with the rule set".into(),
         ),
     };
-    found.push(Diagnostic::error(code, place, error.to_string()).help(help));
-    None
+    Diagnostic::error(code, place, error.to_string()).help(help)
 }
 
 /// Finds levels of another risk without a threshold for the elevated risk, although the same level of the first risk
@@ -347,34 +427,8 @@ fn signal(
             return Some(Diagnostic::error("unit", place, message).help(help));
         }
     }
-    let mut carried = input.source.signal.carried();
-    if let Some(number) = carried.clone().find_map(motor_column) {
-        let message = format!(
-            "input `{}` reads a column of motor {number}, which is not a signal",
-            input.name
-        );
-        let help = format!("write `{{motor: {number}, of: motor_command}}` in place of its name");
-        return Some(Diagnostic::warning("unknown-signal", place, message).help(help));
-    }
-    if let Some(name) = carried.find(|name| unit_of(name).is_none())
-        // CSV logs may have signals of any name, so only a name that resembles a known one is probably a mistake.
-        && let Some(meant) = nearest(name, known.iter().map(|(name, _)| *name))
-            .or_else(|| nearest(name, Signal::names()))
-    {
-        let message = format!("no log format has a signal `{name}`");
-        // For example `wind`: several known signals begin with `wind_`.
-        let start = format!("{name}_");
-        let longer = known
-            .iter()
-            .map(|(name, _)| *name)
-            .filter(|name| name.starts_with(&start));
-        let longer: Vec<String> = longer.map(|name| format!("`{name}`")).collect();
-        let help = match longer.split_last() {
-            Some((last, rest)) if !rest.is_empty() => {
-                format!("did you mean {} or {last}?", rest.join(", "))
-            }
-            _ => format!("did you mean `{meant}`?"),
-        };
+    if let Some((name, message, help)) = unknown_signal(input, known) {
+        let place = at.word(&["inputs", &input.name], name);
         return Some(Diagnostic::warning("unknown-signal", place, message).help(help));
     }
     let mut first = input.source.signal.carried().next();
@@ -443,6 +497,43 @@ fn signal(
     );
     let help = "motor commands are fractions of their range, from 0 to 1; write the terms of the input accordingly";
     Some(Diagnostic::warning("unit", place, message).help(help))
+}
+
+/// Returns a signal that is probably misspelt, with the message and the help.
+pub(crate) fn unknown_signal<'i>(
+    input: &'i ProfileInput,
+    known: &[(&str, &str)],
+) -> Option<(&'i str, String, String)> {
+    let mut carried = input.source.signal.carried();
+    let column = carried
+        .clone()
+        .find_map(|name| Some((name, motor_column(name)?)));
+    if let Some((name, number)) = column {
+        let message = format!(
+            "input `{}` reads a column of motor {number}, which is not a signal",
+            input.name
+        );
+        let help = format!("write `{{motor: {number}, of: motor_command}}` in place of `{name}`");
+        return Some((name, message, help));
+    }
+    let name = carried.find(|name| known.iter().all(|(known, _)| known != name))?;
+    // CSV logs may have signals of any name, so only a name that resembles a known one is probably a mistake.
+    let meant = nearest(name, known.iter().map(|(name, _)| *name))
+        .or_else(|| nearest(name, Signal::names()))?;
+    // For example `wind`: several known signals begin with `wind_`.
+    let start = format!("{name}_");
+    let longer = known
+        .iter()
+        .map(|(name, _)| *name)
+        .filter(|name| name.starts_with(&start));
+    let longer: Vec<String> = longer.map(|name| format!("`{name}`")).collect();
+    let help = match longer.split_last() {
+        Some((last, rest)) if !rest.is_empty() => {
+            format!("did you mean {} or {last}?", rest.join(", "))
+        }
+        _ => format!("did you mean `{meant}`?"),
+    };
+    Some((name, format!("no log format has a signal `{name}`"), help))
 }
 
 /// The number of the motor whose column of a CSV has this name: 3 for `pwm3` and `motor3`.

@@ -595,6 +595,15 @@ impl Flight {
             (None, None) => {
                 Verdict::NotAvailable(match UnknownTime::longest(self.unknown.iter()) {
                     Some(UnknownTime {
+                        reason: Unknown::WarmingUp { .. },
+                        ..
+                    }) if summary.in_air_s <= profile.verdict.quiet_after_take_off_s => {
+                        Reason::TooShort {
+                            in_air_s: summary.in_air_s,
+                            quiet_s: profile.verdict.quiet_after_take_off_s,
+                        }
+                    }
+                    Some(UnknownTime {
                         reason: unknown,
                         total_s,
                         ..

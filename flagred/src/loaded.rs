@@ -13,14 +13,21 @@ use alloc::{
     vec::Vec,
 };
 
+#[doc(hidden)] // For the programs of this repository.
+pub use fuzzy::yaml::is_meant_as_rules;
 use fuzzy::{
     Findings, Source,
     check::AcceptedFindings,
-    diagnostic::nearest,
+    diagnostic::{Diagnostic, nearest},
     tree::{Node, Value},
 };
 
-use crate::{check, estimator::Estimator, profile::Profile, shipped};
+use crate::{
+    check,
+    estimator::Estimator,
+    profile::{Profile, ProfileInput},
+    shipped,
+};
 
 /// A loaded profile and rule set, compiled and in source form.
 #[derive(Debug, Clone)]
@@ -167,8 +174,16 @@ fn finish<E>(
 pub fn examine(profile: &Source, rules: &Source) -> (Findings, Option<Estimator>) {
     let (mut findings, estimator) = fit(profile, rules);
     if let Some(estimator) = &estimator {
-        let outvoted = check::outvoted(profile, estimator);
-        findings.0.extend(outvoted.0);
+        let signals = signals();
+        let outvoted = check::outvoted(profile, estimator).0.into_iter();
+        // Whether an input can raise a warning is unknown while its signal is.
+        let is_known = |finding: &Diagnostic| {
+            let mut inputs = estimator.profile().inputs.iter();
+            let name = |input: &ProfileInput| format!("`{}` ", input.name);
+            let input = inputs.find(|input| finding.message.starts_with(&name(input)));
+            input.is_none_or(|input| check::unknown_signal(input, &signals).is_none())
+        };
+        findings.0.extend(outvoted.filter(is_known));
     }
     (findings, estimator)
 }
@@ -302,7 +317,11 @@ pub fn rules<E>(
         ))
         .help("name a file in it"));
     }
-    let beside = rule_sets_in(folder);
+    let mut beside = rule_sets_in(folder);
+    beside.retain(|file| {
+        let text = folder.and_then(|folder| read(&folder.join(file)).ok());
+        !text.is_some_and(|text| is_profile(&Source::new(text)))
+    });
     let names = shipped::RULE_SETS.iter().map(|known| known.name);
     let names = names.chain(beside.iter().map(String::as_str));
     let is_named = |file: &&String| {
@@ -349,21 +368,6 @@ fn built_in() -> String {
         .iter()
         .map(|known| format!("`{}`", known.name));
     names.collect::<Vec<_>>().join(", ")
-}
-
-/// Whether a line of a text begins with a key that only rule sets and profiles have. Other files are never quoted in
-/// messages: a profile from somebody else may name a file that contains secrets.
-#[doc(hidden)] // For the programs of this repository.
-pub fn is_meant_as_rules(text: &str) -> bool {
-    text.lines().any(|line| {
-        let line = line.trim_start_matches([' ', '-', '{', '"', '\'']);
-        ["fuzzy", "flagred", "inputs", "outputs", "rules"]
-            .iter()
-            .any(|key| {
-                let rest = line.strip_prefix(key);
-                rest.is_some_and(|rest| rest.trim_start_matches(['"', '\'', ' ']).starts_with(':'))
-            })
-    })
 }
 
 /// Whether a text is meant to be a profile: whether it has the key `flagred` or the settings of a profile, or names its

@@ -394,7 +394,7 @@ pub(crate) fn duplicate(
         ),
         "term" => (
             "duplicate-term",
-            "the terms of a variable must have different names; rename one of them",
+            "the terms of a variable must have different names; rename or remove one of them",
         ),
         "finding" => (
             "duplicate-key",
@@ -407,7 +407,7 @@ pub(crate) fn duplicate(
         _ => ("duplicate-key", "keep one of them"),
     };
     Diagnostic::error(code, span, format!("{what} has the {kind} `{name}` twice"))
-        .related(first, "the first one")
+        .related(first, "first defined here")
         .help(help)
 }
 

@@ -141,32 +141,32 @@ const LETTERS: &[(&str, &[(&str, &str)])] = &[
 const ELSEWHERE: &[(&str, &str)] = &[
     (
         "weight",
-        "a weight is at the end of its rule: `IF ... THEN ... WITH 0.8`",
+        "write a weight at the end of its rule: `IF ... THEN ... WITH 0.8`",
     ),
     (
         "type",
-        "a rule set has no type: an output with the defuzzifier `weighted_average` or `weighted_sum` is a Takagi-Sugeno \
-         output, with any other a Mamdani output",
+        "remove it: the defuzzifier `weighted_average` or `weighted_sum` makes an output a Takagi-Sugeno output, any other a \
+         Mamdani output",
     ),
     (
         "defuzzmethod",
-        "each output has its own: `defuzzifier: centroid`",
+        "move it to an output: each output has its own `defuzzifier`",
     ),
     (
         "defuzzifier",
-        "each output has its own: `defuzzifier: centroid`",
+        "move it to an output: each output has its own `defuzzifier`",
     ),
     (
         "<<",
-        "merge keys are not supported: write the keys out, or repeat a whole value with `&name` and `*name`",
+        "merge keys are not supported: write the keys out, or repeat a single value with `&name` and `*name`",
     ),
     (
         "implication",
-        "write it in the `operators` of the rule set: `operators: {implication: product}`",
+        "move it to the `operators` of the rule set: `operators: {implication: product}`",
     ),
     (
         "aggregation",
-        "write it in an output, or in the `operators` of the rule set",
+        "move it to an output, or to the `operators` of the rule set",
     ),
     ("andmethod", "write `operators: {and: minimum}`"),
     ("ormethod", "write `operators: {or: maximum}`"),
@@ -187,7 +187,10 @@ pub(crate) fn equivalents<'a>(
     let word = folded(word);
     let known = WORDS.iter().find(|(other, _)| *other == word);
     let meanings = known.map_or(&[][..], |(_, meanings)| meanings);
-    let is_meant = |candidate: &&str| meanings.contains(candidate) || folded(candidate) == word;
+    let is_meant = |candidate: &&str| {
+        let candidate = folded(candidate);
+        candidate == word || meanings.iter().any(|meaning| folded(meaning) == candidate)
+    };
     candidates.into_iter().filter(is_meant).collect()
 }
 

@@ -39,6 +39,14 @@ const MAX_BLOCKS: usize = 1000;
 /// The maximum number of errors reported for a model; validation stops after that.
 const MAX_FINDINGS: usize = 1000;
 
+/// Returns the suggestion for missing inputs or outputs; `key` is `inputs` or `outputs`.
+pub(crate) fn missing_help(key: &str) -> String {
+    format!(
+        "write each {} below `{key}:`, such as `speed: {{range: [0, 10], partition: [low, high]}}`",
+        key.trim_end_matches('s')
+    )
+}
+
 impl Document {
     /// Validates the model: a valid model can be compiled. `text` is the text from which the model was parsed.
     ///
@@ -116,7 +124,7 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
                 spans.outputs_key.clone(),
                 "the rule set has no output",
             )
-            .help("write a name, a range and terms for at least one output"),
+            .help(missing_help("outputs")),
         );
     }
     for (i, output) in model.outputs.iter().enumerate() {
@@ -156,9 +164,21 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
     }
     validator.blocks(spans);
     validator.interval_outputs(spans);
-    validator.findings.extend(cycle_errors(model, spans));
+    let cycles = cycle_errors(model, spans);
     let mut findings = validator.findings;
-    findings.retain(|finding| finding.code != "unknown-variable" || !spans.names_unread);
+    // The author of two variables with one name probably meant another name, which rules may use.
+    let is_repeated = findings
+        .iter()
+        .any(|finding| finding.code == "duplicate-variable");
+    findings.retain(|finding| match finding.code {
+        "unknown-variable" => !spans.names_unread && !is_repeated,
+        // An output that reads itself is wrong whether its terms are numbers or sets.
+        "output-in-condition" if finding.related.is_empty() => {
+            !cycles.iter().any(|cycle| cycle.span == finding.span)
+        }
+        _ => true,
+    });
+    findings.extend(cycles);
     findings
 }
 
@@ -250,7 +270,7 @@ impl<'m> Validator<'m> {
         for (variable, spans) in variables {
             let here = spans.map_or(0..0, |spans| spans.name.clone());
             if variable.name.is_empty() {
-                let message = String::from("the variable has no name");
+                let message = String::from("an input or an output has no name");
                 self.error(
                     "empty-name",
                     &here,

@@ -288,7 +288,7 @@ fn a_bad_entry_of_a_list_is_named() {
         (
             r#"{"name":"load","#,
             r#"{"name":"load","name":"mass","#,
-            "has no key `name`",
+            "unknown key `name`",
         ),
     ];
     for (before, after, expected) in cases {

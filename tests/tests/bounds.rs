@@ -487,7 +487,7 @@ fn files_of_other_programs_are_refused_in_time() {
                 "<fuzzySystem name=\"large\">{}</fuzzySystem>",
                 "<a>".repeat(900_000)
             ),
-            "elements are nested deeper than 256",
+            "elements are nested more than 256 levels deep",
         ),
         (
             "namespaces",
@@ -676,7 +676,7 @@ fn large_rule_sets_are_checked_in_time() {
             "brackets in a formula",
             formula(&"(".repeat(900_000)),
             1,
-            "brackets, signs and powers are nested deeper than 64",
+            "brackets, signs and powers are nested more than 64 levels deep",
         ),
     ] {
         let path = folder.file("large.yaml", text);

@@ -187,7 +187,7 @@ fn a_profile_is_checked_with_the_rule_set_beside_it() {
     assert!(found[0].contains("did you mean `spread`?"), "{found:?}");
     let found = editor.open(&uri, &profile.replace("my rules", "no rules"));
     assert!(
-        found[0].starts_with("2:0 rule-set the rule set `no rules.yaml`"),
+        found[0].starts_with("2:7 rule-set the rule set `no rules.yaml`"),
         "{found:?}"
     );
     editor.end();

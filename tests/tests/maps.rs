@@ -252,7 +252,10 @@ fn impossible_maps_are_refused() {
             "none is left for an axis",
         ),
         (vec![PAPER, "--of", "danger"], "has no output `danger`"),
-        (vec![PAPER, "--x", "margin:3..1"], "INPUT:LOW..HIGH"),
+        (
+            vec![PAPER, "--x", "margin:3..1"],
+            "write the low end first: `margin:1..3`",
+        ),
         (vec![PAPER, "--svg", "map.png"], "write `map.svg`"),
         (
             vec![PAPER, "--hold", "margin=0.1", "--surface", "--svg", "-"],

@@ -27,7 +27,7 @@ fn assess_csv(csv: &str, more: &[&str]) -> (Option<i32>, String) {
     (output.status.code(), String::from_utf8(text).unwrap())
 }
 
-/// A flight of 60 s at 25 Hz of six motors, which oscillate between their limits, in alternation, from 20 s on. Motors not in
+/// A flight of a hexarotor, 60 s at 25 Hz. From 20 s on, its motors alternate between their limits. Motors not in
 /// `known` have empty cells.
 fn hexa(frame: &str, known: &[usize]) -> String {
     let mut csv = format!(

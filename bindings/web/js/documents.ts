@@ -79,7 +79,7 @@ export interface ExplainedOutput {
   value: number | null;
   /** The lower end of the interval whose middle is the value, if interval type-2 terms determine it; otherwise absent. */
   low?: number | null;
-  /** The upper end of that interval. */
+  /** The upper end of the interval whose middle is the value, if interval type-2 terms determine it; otherwise absent. */
   high?: number | null;
   /** Whether no rule fires and the value is the default of the output. */
   is_default: boolean;
@@ -93,7 +93,7 @@ export interface ExplainedOutput {
   rules: Share[];
   /** The degree of the value in each term; empty for Takagi-Sugeno outputs. */
   terms: Degree[];
-  /** The aggregated set; with interval type-2 terms, the upper one. It is a list of `(value, degree)` at evenly spaced values over the range, or at the singletons. Empty for Takagi-Sugeno and Tsukamoto outputs. */
+  /** The aggregated set; with interval type-2 terms, the upper aggregated set. It is a list of `(value, degree)` at evenly spaced values over the range, or at the singletons. Empty for Takagi-Sugeno and Tsukamoto outputs. */
   set: [number, number][];
 }
 
@@ -110,7 +110,7 @@ export interface Explanation {
   outputs: ExplainedOutput[];
   /** The rules that do not fire. */
   silent?: SilentRule[] | null;
-  /** The nearest changes of the result if one input changes and the others do not. */
+  /** The smallest changes of single inputs that change the result while the other inputs stay the same. */
   changes?: Change[] | null;
 }
 
@@ -168,7 +168,7 @@ export interface FlightFinding {
   raised_s: number;
   /** The time at which the level was raised to FAIL, in seconds; null if it was not. */
   failed_s: number | null;
-  /** The time at which the level was last reached, in seconds. It is held for some time after that. */
+  /** The time at which the level was last reached, in seconds. The level is held for some time after that. */
   to_s: number;
   /** The measure that reached the level first. */
   measure: Measure;
@@ -388,7 +388,7 @@ export interface Share {
   strength: number;
   /** The lower bound of the firing strength, if the condition reads an interval type-2 term; otherwise absent. */
   lower?: number | null;
-  /** The share of the result, in [0, 1]. With maximum as aggregation, it is the fraction of the aggregated set's area in which this rule is the highest; with sums, the rule's fraction of the area of all sets; in a Takagi-Sugeno or Tsukamoto output, its fraction of the weights. With interval type-2 terms, upper bounds determine it. */
+  /** The rule's share of the result, in [0, 1]. With maximum as aggregation, it is the fraction of the aggregated set's area in which this rule is the highest; with sums, the rule's fraction of the area of all sets; in a Takagi-Sugeno or Tsukamoto output, its fraction of the weights. With interval type-2 terms, the share is computed from upper bounds. */
   share: number;
   /** The number that the consequent yields at these inputs; only for Takagi-Sugeno and Tsukamoto outputs and for singletons. */
   value: number | null;
@@ -515,11 +515,11 @@ export interface Vehicle {
   motors: Motor[];
   /** The range of the raw commands. */
   range: Range | null;
-  /** The part of the range that is used in flight, as fractions of it. */
+  /** The part of the range that is used in flight, as fractions of the whole range. */
   effective_range: Range;
   /** The reason why the whole range is used although the log contains limits. */
   effective_range_doubt: string | null;
-  /** The assumptions about motors, their commands and ranges that the log does not record, as texts. */
+  /** The assumptions about motors, commands and ranges that replace information missing from the log, as texts. */
   assumed: string[];
   /** The parameters of the autopilot that determine motors and ranges, and the gains, if the log contains them. */
   parameters: Parameter[];

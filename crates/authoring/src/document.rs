@@ -185,9 +185,13 @@ pub fn examine<'s>(
 
 /// The finding for a profile whose rule set cannot be used.
 fn unusable_rules(text: &str, rules: &str) -> Findings {
-    let place = text.find("rules:").unwrap_or(0);
+    let key = text.find("rules:").map_or(0, |at| at + "rules:".len());
+    let place = text
+        .get(key..)
+        .and_then(|rest| rest.find(rules))
+        .map_or(0, |at| key + at);
     let message = format!("the rule set `{rules}` cannot be used");
-    let finding = Diagnostic::error("rule-set", place..place + 5, message).help(
+    let finding = Diagnostic::error("rule-set", place..place + rules.len(), message).help(
         "`flagred check` shows why; a rule set must be a shipped one, or a file next to the profile",
     );
     Findings::locate(vec![finding], text)

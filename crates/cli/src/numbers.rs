@@ -112,7 +112,7 @@ mod tests {
             ),
             (
                 "1%",
-                "write a number above 0; write `1`, or `0.01` if the value is a share",
+                "write a number above 0; write `1`, or `0.01` if the value is a fraction",
             ),
             (
                 "5min",

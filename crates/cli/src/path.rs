@@ -24,6 +24,9 @@ pub(crate) fn missing(shown: &str) -> String {
     if shown.contains('*') {
         return "no file matches this pattern".to_owned();
     }
+    if has_ending(path, &["html"]) {
+        return format!("to write a report, write `--html {shown}`");
+    }
     if let Some((option, value)) = shown.split_once('=')
         && is_option(option)
     {

@@ -47,8 +47,11 @@ pub(crate) fn rule_set(
     loaded::rule_set(profile, folder, read_text).map_err(|error| match error {
         LoadError::Unusable { message, help } => {
             let text = source.text();
-            let place = text.find("\nrules:").map_or(0, |at| at + 1);
-            let mut finding = Diagnostic::error("rule-set", place..place + 5, message);
+            let tree = source.tree().ok();
+            let place = tree
+                .and_then(|tree| tree.child("rules"))
+                .map(|node| node.span.clone());
+            let mut finding = Diagnostic::error("rule-set", place.unwrap_or(0..0), message);
             finding.help = help;
             refuse(&Findings::locate(vec![finding], text), file, text)
         }

@@ -17,7 +17,7 @@ use std::{
 
 pub(crate) use cell::Cell;
 use foreign::not_a_table;
-use fuzzy::diagnostic::quoted;
+use fuzzy::diagnostic::{nearest, quoted};
 pub(crate) use header::Header;
 pub(crate) use share::Extent;
 
@@ -225,7 +225,11 @@ impl Layout {
         let column = |name: &&str| {
             let named = self.column.iter().find(|(n, _)| n == name);
             let column = named.map_or(*name, |(_, column)| column.as_str());
-            let help = format!("name the column that contains it with `--column {name}=COLUMN`");
+            let near = nearest(name, header.names.iter().map(String::as_str));
+            let near = near
+                .filter(|near| !names.contains(near))
+                .unwrap_or("COLUMN");
+            let help = format!("name the column that contains it with `--column {name}={near}`");
             header.require(column, &help)
         };
         names.iter().map(column).collect()

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use fuzzy::{
     Diagnostic, Findings, Model,
-    diagnostic::nearest,
+    diagnostic::{Severity, suggest},
     format::{Document, Spans},
     model::Variable,
 };
@@ -133,8 +133,9 @@ impl<'t> ModelDraft<'t> {
         known: &[&str],
     ) {
         let known_words = format!("known are {}", known.join(", "));
-        let help = match nearest(word, known.iter().copied()) {
-            Some(near) => format!("did you mean `{near}`?"),
+        let suggested = suggest(word, known.iter().copied());
+        let help = match suggested.filter(|help| help.starts_with("did you mean")) {
+            Some(help) => help,
             None if format == Format::Fis => {
                 format!("functions of your own cannot be read; {known_words}")
             }
@@ -191,15 +192,27 @@ impl<'t> ModelDraft<'t> {
 
     /// Whether an error makes the text unreadable.
     pub(crate) fn has_errors(&self) -> bool {
-        let error = fuzzy::diagnostic::Severity::Error;
         self.findings
             .iter()
-            .any(|finding| finding.severity == error)
+            .any(|finding| finding.severity == Severity::Error)
+    }
+
+    /// Reports a text without an output, which is usually cut off.
+    pub(crate) fn require_output(&mut self, help: &str) {
+        if self.model.outputs.is_empty() && !self.has_errors() {
+            let start = self.text.get(..0).unwrap_or_default();
+            self.error("missing-key", start, "the file has no output".into(), help);
+        }
     }
 
     /// The model, or the errors that make the text unreadable.
     pub(crate) fn finish(mut self) -> Result<Document, Findings> {
         comments::keep(self.text, &mut self.model, &self.spans);
+        if self.has_errors() {
+            // Notes about decisions would distract from the errors.
+            self.findings
+                .retain(|finding| finding.severity != Severity::Note);
+        }
         let findings = Findings::locate(self.findings, self.text);
         if findings.has_errors() {
             return Err(findings);

@@ -203,8 +203,12 @@ pub(crate) fn word<T: Copy + PartialEq>(
 /// All words of a format, for help.
 pub(crate) fn all<T>(words: &Words<T>, format: Format) -> Vec<&'static str> {
     let words = words.iter().map(|entry| entry.1[format as usize]);
-    words
-        .flat_map(|words| words.split('|'))
-        .filter(|word| !word.is_empty())
-        .collect()
+    let words = words.flat_map(|words| words.split('|'));
+    let mut all = vec![];
+    for word in words.filter(|word| !word.is_empty()) {
+        if !all.contains(&word) {
+            all.push(word);
+        }
+    }
+    all
 }

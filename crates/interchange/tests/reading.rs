@@ -456,8 +456,9 @@ fn a_fis_with_fewer_parts_than_declared_has_a_warning() {
             "{after}"
         );
     }
+    // A file without its rules is an error.
     let cut = FIS.split("[Rules]").next().unwrap();
-    assert_eq!(codes(cut, Format::Fis), (true, vec!["wrong-count"]));
+    assert_eq!(codes(cut, Format::Fis), (false, vec!["wrong-count"]));
 }
 
 #[test]

@@ -172,7 +172,8 @@ fn figures(subject: &Subject) -> Markup {
 /// How often large attitude errors followed a risk, if it was measured.
 fn reliability(profile: &Profile) -> Markup {
     let rows = &profile.reliability;
-    let of = |counts: Option<ErrorFrequency>| counts.and_then(words::share).unwrap_or("unknown".into());
+    let of =
+        |counts: Option<ErrorFrequency>| counts.and_then(words::share).unwrap_or("unknown".into());
     html! {
         @if !rows.is_empty() {
             details {

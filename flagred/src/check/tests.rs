@@ -297,11 +297,11 @@ fn numbers_of_statistics_in_another_unit_are_reported() {
         ),
         (
             "share_below: 0.2, of: battery_remaining_pct",
-            "`battery_remaining_pct` is in percent, and 0.2 is a share",
+            "`battery_remaining_pct` is in percent, and 0.2 is a fraction",
         ),
         (
             "percentile: 0.9, of: battery_v",
-            "`percentile` is in percent, and 0.9 is a share",
+            "`percentile` is in percent, and 0.9 is a fraction",
         ),
     ] {
         let found = of(source);
@@ -359,7 +359,7 @@ fn the_author_accepts_findings_by_code_and_name() {
     let wrong = format!("{PROFILE}allow: [{{finding: jump, because: x}}]\n");
     let error = wrong.parse::<Profile>().unwrap_err().to_string();
     assert!(
-        error.contains("`finding` of entry 1 of `allow` cannot be `jump`"),
+        error.contains("unknown word `jump` for `finding` of entry 1 of `allow`"),
         "{error}"
     );
 }

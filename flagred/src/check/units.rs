@@ -168,7 +168,7 @@ pub(super) fn number_of_statistic<'k>(
         Statistic::ShareBelow(threshold) => ("share_below", threshold),
         Statistic::ShareAbove(threshold) => ("share_above", threshold),
         Statistic::Percentile(number) if number > 0.0 && number < 1.0 => {
-            let message = format!("`percentile` is in percent, and {number} is a share");
+            let message = format!("`percentile` is in percent, and {number} is a fraction");
             return finding("percentile", message, Some(percentage_of_share(number)));
         }
         _ => return None,
@@ -198,7 +198,7 @@ pub(super) fn number_of_statistic<'k>(
         (true, _) => format!("{what}, so it is never {side} {threshold}"),
         (_, true) => format!("{what}, so it is always {side} {threshold}"),
         _ if is_percent && threshold < 1.0 => {
-            format!("`{name}` is in percent, and {threshold} is a share")
+            format!("`{name}` is in percent, and {threshold} is a fraction")
         }
         _ => return None,
     };

@@ -210,9 +210,10 @@ impl Reason {
             Reason::SamplesFarApart { .. } => Some(
                 "`longest_gap_s` of the profile has to be longer than the time between samples; if `t_s` is in milliseconds, divide it by 1000",
             ),
-            Reason::Monitor(_) | Reason::TooShort { .. } | Reason::NoSamples | Reason::NoFlight => {
-                None
-            }
+            Reason::TooShort { .. } => Some(
+                "if the flight was longer, check that the log is complete and that its times are in seconds",
+            ),
+            Reason::Monitor(_) | Reason::NoSamples | Reason::NoFlight => None,
         }
     }
 }

@@ -188,14 +188,14 @@ impl Words {
                 "imbalance",
                 ["imbalance {peak} %", ", {motor}"],
                 "The motors share the load differently from earlier in the flight, by {peak} % of their range. The motor to check \
-                 is {motor}, {side} its earlier share.",
+                 is {motor}, whose share is now {side} its earlier share.",
                 "Land. After landing, check {motor}, and whether the load has shifted.",
             ),
             Measure::PairImbalance => (
                 "pair_imbalance",
                 ["pair imbalance {peak} %", ", {motor}"],
-                "The commands of two opposite motors differ by {peak} % of their range. The motor to check is {motor}, {side} the \
-                 motor opposite: it may be weak, or the load may be off centre.",
+                "The commands of two opposite motors differ by {peak} % of their range. The motor to check is {motor}, whose \
+                 command is {side} that of the opposite motor: it may be weak, or the load may be off centre.",
                 "Land. After landing, check {motor}, and the position of battery and payload.",
             ),
             Measure::WeakMotor => (

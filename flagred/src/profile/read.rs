@@ -80,7 +80,7 @@ fn read(tree: &Node, found: &mut Mistakes) -> Option<Profile> {
         "allow",
     ];
     if !matches!(tree.value, Value::Mapping(_)) {
-        found.push(tree.unexpected_document("profile"));
+        found.push(tree.unexpected_document("profile", "flagred: 1"));
         return None;
     }
     let fields = tree.fields("the profile", &keys, "", found)?;
@@ -310,7 +310,7 @@ fn elevated_risk(
         );
         found.push(
             Diagnostic::error("order", low.value.span.clone(), message)
-                .help("the elevated risk falls while the risk is below `low`, and rises while the risk is above `high`"),
+                .help("write a smaller `low` or a larger `high`: the elevated risk falls while the risk is below `low`, and rises while it is above `high`"),
         );
     }
     settings
@@ -338,7 +338,7 @@ fn number(fields: &Fields, key: &str, default: f64, bounds: Bounds, found: &mut 
         Bounds::Above0 => (value > 0.0, "above 0"),
         Bounds::Below1 => (
             (0.0..1.0).contains(&value),
-            "from 0 to below 1: the commands of motors are shares of their range",
+            "from 0 to below 1: the commands of motors are fractions of their range",
         ),
     };
     if !fits {

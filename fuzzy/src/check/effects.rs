@@ -7,7 +7,7 @@ use super::{findings::ModelPositions, shown};
 use crate::{
     Engine,
     diagnostic::Diagnostic,
-    model::{Formula, MembershipFunction, Model, Term, Variable},
+    model::{Formula, MembershipFunction, Model, Output, Term, Variable},
     rule::Hedge,
 };
 
@@ -41,6 +41,7 @@ pub(super) fn of(
             let help = "its values are always in the range; remove `clamp`";
             found.push(Diagnostic::warning("no-effect", at.name(name), message).help(help));
         }
+        numbers_without_effect(output, at, found);
         for term in &output.variable.terms {
             if let MembershipFunction::Function { formula } = &term.membership_function
                 && output.defuzzifier.takes_numbers()
@@ -78,6 +79,34 @@ pub(super) fn of(
         });
     }
     without
+}
+
+/// Reports the settings of a weighted output that apply only to fuzzy sets.
+fn numbers_without_effect(output: &Output, at: &ModelPositions<'_>, found: &mut Vec<Diagnostic>) {
+    let name = &output.variable.name;
+    if !output.defuzzifier.takes_numbers() {
+        return;
+    }
+    let settings = [
+        (output.samples.is_some(), "samples"),
+        (output.aggregation.is_some(), "aggregation"),
+    ];
+    for (_, key) in settings.iter().filter(|(is_set, _)| *is_set) {
+        let message = format!("`{key}` of output `{name}` has no effect");
+        let help = format!("its terms are numbers, not fuzzy sets; remove `{key}`");
+        found.push(Diagnostic::warning("no-effect", at.name(name), message).help(help));
+    }
+    for term in output
+        .variable
+        .terms
+        .iter()
+        .filter(|term| term.height != 1.0)
+    {
+        let (term, span) = (&term.name, at.term_of(name, &term.name));
+        let message = format!("`height` of term `{term}` of output `{name}` has no effect");
+        let help = "the term is a number, not a fuzzy set; remove `height`, or give the rules a weight: `WITH 0.5`";
+        found.push(Diagnostic::warning("no-effect", span, message).help(help));
+    }
 }
 
 /// The degrees of a term at evenly spaced values of its variable.

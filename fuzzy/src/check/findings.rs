@@ -9,8 +9,8 @@ use alloc::{
 use core::ops::Range;
 
 use super::{
-    AgainstTrend, Contradiction, Coordinate, Counterexample, Direction, EqualTerms, Jump, Reach,
-    Report, TermGap, TermOf, UncoveredRegion, effects,
+    AgainstTrend, Antecedent, Contradiction, Coordinate, Counterexample, Direction, EqualTerms,
+    Jump, Reach, Report, TermGap, TermOf, UncoveredRegion, effects,
     gaps::{Gap, gaps, is_missing},
     outer, shown,
     terms::is_zero_on_range,
@@ -18,7 +18,7 @@ use super::{
 use crate::{
     diagnostic::{Diagnostic, listed},
     model::{
-        Model, NoRuleFires, Variable,
+        MembershipFunction, Model, NoRuleFires, Variable,
         document::{Spans, VariableSpans},
     },
     rule::{Condition, Consequent, Rule},
@@ -33,7 +33,8 @@ pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnosti
     let at = ModelPositions { model, spans };
     let mut found = Vec::new();
     duplicate_rules(model, &at, &mut found);
-    let gaps = gaps(report);
+    let mut gaps = gaps(report);
+    gaps.retain(|gap| !at.is_of_silent_rules(gap.region, report));
     for gap in gaps.iter().take(MAX_LISTED_BOXES) {
         found.push(at.uncovered(gap));
     }
@@ -99,13 +100,16 @@ pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnosti
     let outside = report.unreachable.iter();
     found.extend(outside.filter_map(|one| at.outside_range(one)));
     found.extend(report.equal_terms.iter().map(|one| at.equal_terms(one)));
-    found.extend(report.holes.iter().map(|one| at.hole(one)));
-    found.extend(
-        report
-            .reach
+    // A hole of an input with a term outside the range follows from that term.
+    let holes = report.holes.iter().filter(|hole| {
+        let mut outside = report
+            .unreachable
             .iter()
-            .filter_map(|one| at.reach(one, report.reach_complete)),
-    );
+            .filter(|one| at.outside_range(one).is_some());
+        outside.all(|one| one.variable != hole.input)
+    });
+    found.extend(holes.map(|one| at.hole(one)));
+    found.extend(report.reach.iter().filter_map(|one| at.reach(one, report)));
     found.extend(report.against_trend.iter().map(|one| at.against_trend(one)));
     found.extend(
         report
@@ -310,13 +314,47 @@ impl ModelPositions<'_> {
             .help("first add the rules that the other findings name")
     }
 
+    /// Whether the rules of a region exist, but never fire, which is reported on its own.
+    fn is_of_silent_rules(&self, region: &UncoveredRegion, report: &Report) -> bool {
+        let is_of = |rule: &usize, antecedents: &[Antecedent]| {
+            let Some(rule) = self.model.rules.get(*rule).map(|rule| &rule.rule) else {
+                return false;
+            };
+            let mut is_of = matches!(rule.condition, Condition::Is(_) | Condition::And(_))
+                && rule
+                    .consequents
+                    .iter()
+                    .any(|c| c.output.text == region.output);
+            rule.condition.visit(&mut |proposition| {
+                let term = proposition.term.as_ref().map(|term| &term.text);
+                is_of &= proposition.hedges.is_empty()
+                    && antecedents.iter().any(|one| {
+                        one.input == proposition.variable.text && Some(&one.term) == term
+                    });
+            });
+            is_of
+        };
+        region.more_missing == 0
+            && !region.missing.is_empty()
+            && region.missing.iter().all(|all| {
+                let mut rules = report.never_firing.iter();
+                rules.any(|rule| is_of(rule, all))
+            })
+    }
+
     fn unused(&self, one: &TermOf) -> Diagnostic {
         let message = match &one.term {
             Some(term) => format!("no rule uses the term `{term}` of `{}`", one.variable),
             None => format!("no rule uses `{}`", one.variable),
         };
-        Diagnostic::warning("unused", self.term(one), message)
-            .help("write a rule for it, or remove it")
+        let keyword = one.term.as_deref().filter(|term| Rule::is_keyword(term));
+        let help = match keyword {
+            Some(term) => format!(
+                "`{term}` is a word of the rule language: a rule names the term in quotes, `IS \"{term}\"`"
+            ),
+            None => "write a rule for it, or remove it".into(),
+        };
+        Diagnostic::warning("unused", self.term(one), message).help(help)
     }
 
     fn contradicts_itself(&self, one: &Contradiction) -> Diagnostic {
@@ -346,7 +384,10 @@ impl ModelPositions<'_> {
         if is_reported {
             return None;
         }
-        let mut help = String::from("no inputs satisfy its condition, or its weight is 0");
+        let mut help = String::from(match rule.weight {
+            0.0 => "its weight is 0: write a larger weight, or remove the rule",
+            _ => "no inputs satisfy its condition: correct the condition, or remove the rule",
+        });
         for consequent in &rule.consequents {
             let (output, term) = (&consequent.output.text, &consequent.term.text);
             let of = |one: &TermOf| one.variable == *output && one.term.as_ref() == Some(term);
@@ -372,7 +413,12 @@ impl ModelPositions<'_> {
         let message =
             format!("term `{term}` of input `{name}` is 0 on the whole range [{low}, {high}]");
         let finding = Diagnostic::warning("term-outside-range", self.term(one), message);
-        Some(finding.help("widen the range or move the term"))
+        let shape = input.terms.iter().find(|one| one.name == term);
+        let shape = shape.map(|term| crate::format::shape_text(&term.membership_function));
+        Some(finding.help(format!(
+            "widen the range or move the term, which is `{}`",
+            shape.unwrap_or_default()
+        )))
     }
 
     fn equal_terms(&self, one: &EqualTerms) -> Diagnostic {
@@ -413,14 +459,14 @@ impl ModelPositions<'_> {
     }
 
     /// Reports an output that leaves its range or does not come near an end of it.
-    fn reach(&self, one: &Reach, is_complete: bool) -> Option<Diagnostic> {
+    fn reach(&self, one: &Reach, report: &Report) -> Option<Diagnostic> {
         const BEYOND: f64 = 1e-9;
         let [low, high] = one.range;
         let beyond = BEYOND * (high - low);
         if one.low < low - beyond || one.high > high + beyond {
             return Some(self.outside(one));
         }
-        if !is_complete {
+        if !report.reach_complete {
             // The output may take other values at points that were not evaluated.
             return None;
         }
@@ -443,7 +489,8 @@ impl ModelPositions<'_> {
             let help = outer::remedies(self.model, output, &one.unreached);
             return Some(Diagnostic::warning("narrow-reach", here, message).help(help));
         }
-        if outer::covers_range(output, (one.low, one.high)) {
+        if outer::covers_range(output, (one.low, one.high)) || self.has_unheard_rules(name, report)
+        {
             return None;
         }
         let message = format!(
@@ -451,8 +498,12 @@ impl ModelPositions<'_> {
             shown(low),
             shown(high)
         );
-        let help = match output.defuzzifier.is_weighted() {
-            true => format!(
+        let is_weighted = output.defuzzifier.is_weighted();
+        let help = match outer::concludes_beyond(self.model, output, (one.low, one.high)) {
+            true => String::from(
+                "where a rule concludes other values, rules with different conclusions fire as well; if you need these values, change the conditions",
+            ),
+            false if is_weighted => format!(
                 "its rules conclude no other values: write `range: {stays}`, or add terms and rules for the others"
             ),
             false => String::from(
@@ -460,6 +511,21 @@ impl ModelPositions<'_> {
             ),
         };
         Some(Diagnostic::note("narrow-reach", here, message).help(help))
+    }
+
+    /// Whether rules for an output never fire, contradict each other, or leave out a term, which is reported on its own.
+    fn has_unheard_rules(&self, output: &str, report: &Report) -> bool {
+        let concludes = |rule: &usize| {
+            let rule = self.model.rules.get(*rule);
+            rule.is_some_and(|rule| {
+                let mut consequents = rule.rule.consequents.iter();
+                consequents.any(|consequent| consequent.output.text == output)
+            })
+        };
+        let is_unused = |one: &TermOf| one.variable == output && one.term.is_some();
+        report.never_firing.iter().any(concludes)
+            || report.unused.iter().any(is_unused)
+            || report.contradictions.iter().any(|one| one.output == output)
     }
 
     /// Reports a Takagi-Sugeno output that takes values outside its range.
@@ -549,10 +615,51 @@ impl ModelPositions<'_> {
             one.input,
             coordinates(&at)
         );
-        Diagnostic::warning("jump", self.name(&one.output), message).help(
-            "a vertical edge of a term, or a switch from one rule to another, causes it; let terms overlap, or accept intended jumps with `allow`; smaller jumps along the same input are not listed",
-        )
+        let crisp = self
+            .variable(&one.input)
+            .and_then(|(_, input)| crisp_limits(input));
+        let help = match crisp {
+            Some(crisp) => format!(
+                "{crisp}; accept intended jumps with `allow`; smaller jumps along the same input are not listed"
+            ),
+            None => "a vertical edge of a term, or a switch from one rule to another, causes it; let terms overlap, or accept intended jumps with `allow`; smaller jumps along the same input are not listed".into(),
+        };
+        Diagnostic::warning("jump", self.name(&one.output), message).help(help)
     }
+}
+
+/// Returns a suggestion for an input whose terms are rectangles that meet at their limits: both terms have the degree 1
+/// there.
+fn crisp_limits(input: &Variable) -> Option<String> {
+    let edges = input
+        .terms
+        .iter()
+        .map(|term| match term.membership_function {
+            MembershipFunction::Rectangle { left, right } if term.lower.is_none() => {
+                Some((term.name.as_str(), left, right))
+            }
+            _ => None,
+        });
+    let mut edges: Vec<(&str, f64, f64)> = edges.collect::<Option<_>>()?;
+    edges.sort_by(|(_, a, _), (_, b, _)| a.total_cmp(b));
+    let meets =
+        |pair: &[(&str, f64, f64)]| matches!(pair, [(.., right), (_, left, _)] if left == right);
+    if edges.len() < 2 || !edges.windows(2).all(meets) {
+        return None;
+    }
+    let ((last, ..), below) = edges.split_last()?;
+    let steps = below
+        .iter()
+        .map(|(name, _, right)| format!("{name}: {}", shown(*right)));
+    let steps: Vec<String> = steps.collect();
+    let (first, _, limit) = below.first()?;
+    let second = edges.get(1).map_or("", |(name, ..)| name);
+    Some(format!(
+        "`{first}` and `{second}` of `{}` are both 1 at {}: for crisp limits write `steps: {{{}, {last}: }}`",
+        input.name,
+        shown(*limit),
+        steps.join(", ")
+    ))
 }
 
 pub(super) fn coordinates(at: &[Coordinate]) -> String {

@@ -87,6 +87,27 @@ pub(super) fn covers_range(output: &Output, (low, high): (f64, f64)) -> bool {
     is_covered(first, variable.low, low) && is_covered(last, high, variable.high)
 }
 
+/// Returns whether a rule concludes a term whose values are all outside `[low, high]`.
+pub(super) fn concludes_beyond(model: &Model, output: &Output, (low, high): (f64, f64)) -> bool {
+    let variable = &output.variable;
+    let near = NEAR * (variable.high - variable.low);
+    let rules = model.rules.iter().filter(|rule| model.is_enabled(rule));
+    let mut consequents = rules.flat_map(|rule| &rule.rule.consequents);
+    consequents.any(|consequent| {
+        let mut terms = variable.terms.iter();
+        let term = terms.find(|term| {
+            consequent.output.text == variable.name && term.name == consequent.term.text
+        });
+        term.is_some_and(|term| {
+            let (first, last) = match term.membership_function.number() {
+                Some(number) => (number, number),
+                None => variable.plateau(&term.membership_function),
+            };
+            last < low - near || first > high + near
+        })
+    })
+}
+
 /// Returns the first and the last term in the order of their peaks, with their plateaus.
 fn outer(variable: &Variable) -> [Option<(&Term, (f64, f64))>; 2] {
     let terms = || {

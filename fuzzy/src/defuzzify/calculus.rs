@@ -167,7 +167,8 @@ impl Kinks {
 /// The properties of an aggregation between its kinks and steps.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Smooth {
-    /// An aggregation that gives the same degrees between the kinks and steps. Beyond a step, the degree is 1 instead.
+    /// An aggregation that gives the same degrees as the aggregation of the output, except beyond a step, where the
+    /// degree of the output is 1.
     pub(super) aggregation: Aggregation,
     /// Whether the aggregated degree jumps to 1 at some positions.
     pub(super) has_steps: bool,

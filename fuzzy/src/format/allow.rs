@@ -98,7 +98,7 @@ fn entry(
                 .is_some_and(|help| help.starts_with("did you mean"))
         {
             finding.help = Some(format!(
-                "only these warnings and notes can be accepted (not errors or claims): {}",
+                "`allow` accepts only these warnings and notes, no errors: {}",
                 all_of(codes)
             ));
         }

@@ -64,11 +64,18 @@ fn one(
         activation: model.activation,
         ..Block::new(entry.key)
     };
-    let help = match entry.key {
+    if KEYS.contains(&entry.key) && !matches!(entry.value.value, Value::Mapping(_)) {
         // The keys of a block are directly below `blocks`, without the name of the block.
-        key if KEYS.contains(&key) => "write the name of the block above its keys: `blocks: {main: {rules: [IF ... THEN ...]}}`".into(),
-        name => format!("write `{name}: {{rules: [IF ... THEN ...]}}`"),
-    };
+        let message = "`blocks` has the keys of a block, but not its name";
+        let help = "write the name of the block above its keys, and indent the keys: `blocks: {main: {rules: [IF ... THEN ...]}}`";
+        if !findings.iter().any(|finding| finding.message == message) {
+            let finding = Diagnostic::error("wrong-type", entry.key_span.clone(), message);
+            findings.push(finding.help(help));
+        }
+        spans.rules_unread = true;
+        return block;
+    }
+    let help = format!("write `{}: {{rules: [IF ... THEN ...]}}`", entry.key);
     let Some(fields) = entry.fields(&what, &KEYS, &help, findings) else {
         spans.rules_unread = true;
         return block;
@@ -115,21 +122,31 @@ pub(super) fn activation(
     const HELP: &str = "write one: `activation: general`, `{first: 1}`, `{last: 1}`, `{highest: 1}`, `{lowest: 1}`, `proportional`, \
                         `{threshold: {at_least: 0.3}}`";
     *span = node.span.clone();
+    let keys = ["first", "last", "highest", "lowest", "threshold"];
     let Value::Mapping(pairs) = &node.value else {
         let before = findings.len();
         let method = node.choice(what, &METHODS, findings);
         if let Some(finding) = findings.get_mut(before) {
-            finding.help = Some(HELP.into());
+            let word = node.as_text().unwrap_or("");
+            finding.help = Some(match keys.contains(&word) {
+                true if word == "threshold" => "write `{threshold: {at_least: 0.3}}`".into(),
+                true => format!("write how many rules may fire: `{{{word}: 1}}`"),
+                false => HELP.into(),
+            });
         }
         return method;
     };
-    let keys = ["first", "last", "highest", "lowest", "threshold"];
     let before = findings.len();
     let fields = node.fields(what, &keys, HELP, findings)?;
     let [method] = fields.entries() else {
         if findings.len() == before {
             let message = format!("{what} has {} methods", pairs.len());
-            findings.push(Diagnostic::error("wrong-type", node.span.clone(), message).help(HELP));
+            let methods = pairs
+                .iter()
+                .map(|(key, value)| format!("`{{{}: {}}}`", key.to_line(), value.to_line()));
+            let methods: Vec<String> = methods.collect();
+            let help = format!("keep one of them: {}", methods.join(" or "));
+            findings.push(Diagnostic::error("wrong-type", node.span.clone(), message).help(help));
         }
         return None;
     };
@@ -155,8 +172,14 @@ pub(super) fn activation(
 }
 
 fn count(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<u32> {
-    let rules = node.whole(what, 1, findings)?;
-    Some(u32::try_from(rules).unwrap_or(u32::MAX))
+    let before = findings.len();
+    let rules = node.whole(what, 1, findings);
+    if let Some(number) = node.child("rules").and_then(Node::as_number_text)
+        && let Some(finding) = findings.get_mut(before)
+    {
+        finding.help = Some(format!("write `{number}`"));
+    }
+    Some(u32::try_from(rules?).unwrap_or(u32::MAX))
 }
 
 /// Reads `2` or `{rules: 2, at_least: 0.1}`.
@@ -176,7 +199,10 @@ fn counted(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<(u
 
 /// Reads `{at_least: 0.3}`.
 fn threshold(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<Activation> {
-    let help = "write `{at_least: 0.3}`, or `below`, `at_most`, `equal`, `not_equal`, `above`";
+    let number = node.as_number_text().unwrap_or("0.3");
+    let help = &format!(
+        "write `{{at_least: {number}}}`, or `below`, `at_most`, `equal`, `not_equal` or `above` in place of `at_least`"
+    );
     let Value::Mapping(_) = &node.value else {
         let finding = node.unexpected(&format!("a comparison for {what}"));
         findings.push(finding.help(help));

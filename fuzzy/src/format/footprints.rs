@@ -21,7 +21,7 @@ use crate::{
 pub(super) const KEYS: [&str; 3] = ["blur", "lower_scale", "lower_lag"];
 
 /// The suggestion for membership functions without a short form.
-const BOTH: &str = "write both membership functions: `{upper: {triangle: [0, 2, 4]}, lower: {triangle: [1, 2, 3]}}`";
+pub(super) const BOTH: &str = "write both membership functions: `{upper: {triangle: [0, 2, 4]}, lower: {triangle: [1, 2, 3]}}`";
 
 /// Adds the lower membership function to a term, if one of [`KEYS`] is in its mapping. `None` if the keys are invalid.
 pub(super) fn extended(
@@ -61,7 +61,7 @@ pub(super) fn extended(
         Some(entry) => number_in(
             &format!("`lower_scale` of {what}"),
             entry.value,
-            ("greater than 0, at most 1", |x| x > 0.0 && x <= 1.0),
+            ("greater than 0 and at most 1", |x| x > 0.0 && x <= 1.0),
             findings,
         )?,
     };
@@ -256,7 +256,7 @@ pub(super) fn misplaced(what: &str, fields: &Fields<'_>, findings: &mut Vec<Diag
     true
 }
 
-/// Reads a distance as a share of the range.
+/// Reads a distance as a fraction of the range.
 fn share(
     what: &str,
     node: &Node,
@@ -274,7 +274,7 @@ fn share(
         && distance < width
     {
         finding.help = Some(format!(
-            "it is a share of the width of the range: for {distance} of {width} write `{}`",
+            "`blur` is a fraction of the width of the range: for {distance} of {width} write `{}`",
             rounded(distance / width)
         ));
     }
@@ -454,7 +454,7 @@ mod tests {
         );
         refused(
             "terms: {warm: {triangle: [4, 8, 16], lower_scale: 1.5}}",
-            "`lower_scale` of term `warm` of input `x` is 1.5, but must be greater than 0, at most 1",
+            "`lower_scale` of term `warm` of input `x` is 1.5, but must be greater than 0 and at most 1",
             "write for example `0.1`",
         );
         refused(

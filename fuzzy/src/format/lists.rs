@@ -118,7 +118,7 @@ fn mapping(what: &str, list: &Node, findings: &mut Vec<Diagnostic>) -> Option<No
     let mut entries = Vec::with_capacity(items.len());
     for (i, item) in items.iter().enumerate() {
         let entry = format!("entry {} of {what}", i + 1);
-        let help = "write the entries as `{name: NAME, ...}`";
+        let help = "write its name: `- name: ...`, and below that its other keys";
         let Value::Mapping(fields) = &item.value else {
             let finding = item.unexpected(&format!("a mapping with a `name` for {entry}"));
             findings.push(finding.help(help));
@@ -133,6 +133,17 @@ fn mapping(what: &str, list: &Node, findings: &mut Vec<Diagnostic>) -> Option<No
             None => {
                 let message = format!("{entry} has no `name`");
                 let finding = Diagnostic::error("missing-key", item.span.clone(), message);
+                if let [(name, value), keys @ ..] = own.as_slice()
+                    && value.is_null()
+                    && !keys.is_empty()
+                {
+                    let text = name.as_text().unwrap_or_default();
+                    findings.push(finding.help(format!(
+                        "remove the `-` before `{text}:`, and indent the keys below it"
+                    )));
+                    entries.push((name.clone(), with(item, Value::Mapping(keys.to_vec()))));
+                    continue;
+                }
                 // `- heat: {range: [0, 40]}` is a mapping with one entry.
                 let only = match own.as_slice() {
                     [(key, value)] if is_mapping(value) => key.as_text().map(|key| (key, value)),

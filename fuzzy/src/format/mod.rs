@@ -6,10 +6,10 @@
 use alloc::{format, string::String, vec::Vec};
 
 use crate::{
-    diagnostic::{Diagnostic, Findings, Severity},
+    diagnostic::{Diagnostic, Findings, Severity, is_curly_quote},
     model::{MIN_STRENGTH, Model, Operators},
     tree::{Fields, Node, Value},
-    validate::validate,
+    validate::{missing_help, validate},
 };
 
 mod allow;
@@ -37,6 +37,8 @@ pub use crate::model::document::{
 pub use schema::schema;
 #[doc(hidden)]
 pub use shapes::text as shape_text;
+#[cfg(feature = "yaml")]
+pub(crate) use variables::is_key_of_variable;
 #[doc(hidden)]
 pub use words::word_of_or;
 
@@ -77,6 +79,8 @@ fn read_lacking(
     let mut findings = Vec::new();
     let mut spans = Spans::default();
     let tree = lists::to_mappings(tree, &mut findings);
+    // An entry without a name may be the variable that a rule names.
+    spans.names_unread = !findings.is_empty();
     let model = model(&tree, &mut spans, &mut findings);
     if let Some(model) = &model {
         let mut invalid = validate(model, &spans);
@@ -146,14 +150,24 @@ const KEYS: [&str; 12] = [
 /// Reads the model as far as possible. A part that cannot be read is reported, and only its name is included.
 fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Option<Model> {
     if !matches!(tree.value, Value::Mapping(_)) {
-        let finding = tree.unexpected_document("rule set");
-        findings.push(finding.help("a rule set begins with `fuzzy: 1`"));
+        findings.push(tree.unexpected_document("rule set", "fuzzy: 1"));
         return None;
     }
     let mut unknown_keys = Vec::new();
     let fields = tree.fields("the rule set", &KEYS, "", &mut unknown_keys)?;
-    if let Some(node) = fields.get("fuzzy")
-        && node.whole("the format version `fuzzy`", 0, findings)? != VERSION
+    let before = findings.len();
+    let version = fields.get("fuzzy").map(|node| {
+        let version = node.whole("the format version `fuzzy`", 0, findings);
+        let is_open = |help: &String| help.starts_with("write a whole number");
+        if let Some(finding) = findings.get_mut(before)
+            && finding.help.as_ref().is_some_and(is_open)
+        {
+            finding.help = Some(format!("write `fuzzy: {VERSION}`"));
+        }
+        (node, version)
+    });
+    if let Some((node, version)) = version
+        && version? != VERSION
     {
         let written = node.words("the version", "write `fuzzy: 1`", findings)?;
         let message = format!("format version `{}` is not supported", written.text);
@@ -165,7 +179,7 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
         // In another version, all other keys may have a different meaning.
         return None;
     }
-    if let Some(finding) = outdented(&fields) {
+    if let Some(finding) = outdented(&fields).or_else(|| other_first_key(&fields)) {
         findings.push(finding);
         return None;
     }
@@ -185,18 +199,10 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
         );
     }
     let inputs = fields
-        .require(
-            "inputs",
-            "write `inputs:` and a name, a range and terms for each",
-            findings,
-        )
+        .require("inputs", &missing_help("inputs"), findings)
         .and_then(|node| variables::inputs(node, spans, findings));
     let outputs = fields
-        .require(
-            "outputs",
-            "write `outputs:` and a name, a range and terms for each",
-            findings,
-        )
+        .require("outputs", &missing_help("outputs"), findings)
         .and_then(|node| variables::outputs(node, spans, findings));
     let operators = fields.get("operators").and_then(|node| {
         let keys = ["and", "or", "implication", "aggregation"];
@@ -271,21 +277,41 @@ fn outdented(fields: &Fields<'_>) -> Option<Diagnostic> {
     let section = above
         .filter(|entry| ["inputs", "outputs"].contains(&entry.key))
         .last()?;
-    let Value::Mapping(pairs) = &section.value.value else {
-        return None;
-    };
-    let (first, _) = pairs.first()?;
     let kind = section.key.trim_end_matches('s');
     let message = format!(
-        "the rule set has no key `{}`, which looks like an {kind}",
+        "unknown key `{}` at the top level; it looks like an {kind}",
         stray.key
     );
-    let help = format!("indent `{}:` like `{}:`", stray.key, first.as_text()?);
+    let help = match &section.value.value {
+        Value::Mapping(pairs) => {
+            let (first, _) = pairs.first()?;
+            format!("indent `{}:` like `{}:`", stray.key, first.as_text()?)
+        }
+        _ if section.value.is_null() => format!(
+            "indent `{}:` and the lines below it: each {kind} is indented below `{}:`",
+            stray.key, section.key
+        ),
+        _ => return None,
+    };
     Some(Diagnostic::error("unknown-key", stray.key_span.clone(), message).help(help))
 }
 
-/// Returns a finding if the outputs are below `inputs`, because `outputs:` is missing above them or the two keys were
-/// exchanged.
+/// Returns a finding for a file that begins with `key: 1` for another key than `fuzzy`, as files of another kind do.
+fn other_first_key(fields: &Fields<'_>) -> Option<Diagnostic> {
+    let first = fields.entries().first()?;
+    let is_version = first.value.as_number_text() == Some("1");
+    if !is_version
+        || fields.get("fuzzy").is_some()
+        || !fields.unknown().any(|entry| entry.key == first.key)
+    {
+        return None;
+    }
+    let message = format!("a rule set begins with `fuzzy: 1`, not `{}: 1`", first.key);
+    let finding = Diagnostic::error("unknown-key", first.key_span.clone(), message);
+    Some(finding.help("write `fuzzy: 1` in its place"))
+}
+
+/// Returns a finding if the outputs are below `inputs`, because `outputs:` is missing above them or both were exchanged.
 fn outputs_among_inputs(fields: &Fields<'_>) -> Option<Diagnostic> {
     let variables = |key: &str| match fields.get(key).map(|node| &node.value) {
         Some(Value::Mapping(pairs)) => pairs.as_slice(),
@@ -337,6 +363,12 @@ pub(crate) fn write_lists(model: &Model) -> Node {
 fn optional_text(fields: &Fields<'_>, key: &str, findings: &mut Vec<Diagnostic>) -> Option<String> {
     let node = fields.get(key)?;
     let help = format!("write a text: `{key}: ...`");
-    let text = node.words(&format!("`{key}`"), &help, findings)?;
-    Some(text.text.clone())
+    let text = &node.words(&format!("`{key}`"), &help, findings)?.text;
+    let inner = text.trim_matches(is_curly_quote);
+    if text.starts_with(is_curly_quote) && text.ends_with(is_curly_quote) && !inner.is_empty() {
+        let message = format!("the typographic quotes are read as a part of `{key}`");
+        let finding = Diagnostic::warning("typographic-quotes", node.span.clone(), message);
+        findings.push(finding.help(format!("write straight quotes: `{key}: \"{inner}\"`")));
+    }
+    Some(text.clone())
 }

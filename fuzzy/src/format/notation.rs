@@ -82,6 +82,11 @@ pub(super) fn other_terms(entries: &[Entry<'_>]) -> Option<String> {
     {
         return (!entries.is_empty()).then(|| "write `terms` in place of `partition`".into());
     }
+    if let Some(terms) = corners(entries) {
+        return Some(format!(
+            "write `terms: {{{terms}}}` in place of `partition`"
+        ));
+    }
     let ends = entries.iter().map(|entry| match &entry.value.value {
         Value::List(ends) => match ends.as_slice() {
             [low, high] => low.as_number_text().and(high.as_number_text()),
@@ -104,6 +109,37 @@ pub(super) fn other_terms(entries: &[Entry<'_>]) -> Option<String> {
         "for limits in place of peaks write `steps: {{{}}}`",
         steps.join(", ")
     ))
+}
+
+/// Returns the terms whose corners are the lists of a partition such as `{cold: [0, 0, 20], hot: [20, 40, 40]}`.
+fn corners(entries: &[Entry<'_>]) -> Option<String> {
+    let terms = entries.iter().map(|entry| {
+        let Value::List(items) = &entry.value.value else {
+            return None;
+        };
+        let shape = match items.len() {
+            3 => "triangle",
+            4 => "trapezoid",
+            _ => return None,
+        };
+        Some(format!(
+            "{}: {{{shape}: {}}}",
+            entry.key,
+            entry.value.to_line()
+        ))
+    });
+    let terms: Vec<String> = terms.collect::<Option<_>>()?;
+    (!terms.is_empty()).then(|| terms.join(", "))
+}
+
+/// Returns a suggestion for a partition such as `{dry, wet}`, which YAML reads as names without peaks.
+pub(super) fn without_peaks(entries: &[Entry<'_>]) -> Option<String> {
+    let are_bare = entries.iter().all(|entry| entry.value.is_null());
+    let names: Vec<&str> = entries.iter().map(|entry| entry.key).collect();
+    (are_bare && !names.is_empty()).then(|| {
+        let names = names.join(", ");
+        format!("for even spacing write a list: `[{names}]`")
+    })
 }
 
 /// Returns a suggestion for peaks such as `{cold:10, hot: 35}` or `{cold=10, hot=35}`, which YAML reads as names.
@@ -138,7 +174,7 @@ pub(super) fn suggestion_for_word(word: &str) -> Option<String> {
         return Some("did you mean `previous`?".into());
     }
     if is(&["none", "nan", "na", "unknown"]) {
-        return Some("did you mean `undefined`? A value is written as `{value: 50}`".into());
+        return Some("did you mean `undefined`?".into());
     }
     let number = word.strip_prefix("value")?.trim();
     number.parse::<f64>().ok()?;

@@ -11,7 +11,7 @@ use super::{RuleSpans, Spans, optional_text};
 use crate::{
     diagnostic::Diagnostic,
     model::{Model, RejectedConsequent, Rule, Variable},
-    rule::{self, Condition, Owner},
+    rule::{self, Condition, KnownNames, KnownVariable},
     tree::{Fields, Node, Scalar, Value},
 };
 
@@ -29,23 +29,19 @@ pub(super) fn read(
         let is_list = node
             .as_text()
             .is_some_and(|text| text.trim_start().starts_with("- "));
-        findings.push(finding.help(match is_list {
-            true => "remove the `|` or `>` after `rules:`: it makes a text of the list",
-            false => "begin the line of each rule with `- IF`; rules have no names",
+        findings.push(finding.help(match &node.value {
+            _ if is_list => "remove the `|` or `>` after `rules:`: it makes a text of the list",
+            Value::Mapping(_) => "begin the line of each rule with `- IF`; rules have no names",
+            _ => "begin the line of each rule with `- IF`",
         }));
         return None;
     };
-    let owner = |kind: &str, term: &str| {
-        let has_term = |variable: &&Variable| variable.terms.iter().any(|one| one.name == term);
-        let found = match kind {
-            "output" => model
-                .outputs
-                .iter()
-                .map(|output| &output.variable)
-                .find(has_term),
-            _ => model.inputs.iter().find(has_term),
-        };
-        Some(found?.name.clone())
+    let known_inputs: Vec<KnownVariable<'_>> = model.inputs.iter().map(known_variable).collect();
+    let outputs = model.outputs.iter().map(|output| &output.variable);
+    let known_outputs: Vec<KnownVariable<'_>> = outputs.map(known_variable).collect();
+    let known = KnownNames {
+        inputs: &known_inputs,
+        outputs: &known_outputs,
     };
     let before = model.rules.len();
     let mut rules = Vec::with_capacity(items.len());
@@ -79,7 +75,7 @@ pub(super) fn read(
             whole: item.span.clone(),
             ..RuleSpans::default()
         };
-        match one(item, before + i + 1, &owner, &mut here, findings) {
+        match one(item, before + i + 1, known, &mut here, findings) {
             Some(rule) => {
                 rules.push(rule);
                 spans.rules.push(here);
@@ -119,7 +115,7 @@ fn of_parts(fields: &Fields<'_>) -> Option<String> {
 fn one(
     node: &Node,
     number: usize,
-    owner: Owner<'_>,
+    known: KnownNames<'_>,
     spans: &mut RuleSpans,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<Rule> {
@@ -137,12 +133,18 @@ fn one(
         note: None,
     };
     if let Value::Scalar(_) = &node.value {
-        (found.rule, spans.weight) = parse(node.words(&what, HELP, findings)?, owner, findings)?;
+        (found.rule, spans.weight) = parse(node.words(&what, HELP, findings)?, known, findings)?;
         return Some(found);
     }
     let Value::Mapping(pairs) = &node.value else {
         let finding = node.unexpected(&format!("text or a mapping for {what}"));
-        findings.push(finding.help(HELP));
+        let parts = match &node.value {
+            Value::List(parts) => parts.iter().map(Node::as_text).collect(),
+            _ => None,
+        };
+        let help =
+            parts.map(|parts: Vec<&str>| format!("remove the brackets: `- {}`", parts.join(" ")));
+        findings.push(finding.help(help.unwrap_or_else(|| HELP.into())));
         return None;
     };
     if let [(key, value)] = pairs.as_slice()
@@ -170,8 +172,10 @@ fn one(
         .and_then(|node| node.whole(&format!("the support of {what}"), 0, findings));
     found.note = optional_text(&fields, "note", findings);
     if let Some(node) = fields.get("against") {
-        let what = format!("`against` of {what}");
-        let help = format!("write `against: [{REJECTED_EXAMPLE}]`");
+        let what = format!("an entry of `against` of {what}");
+        let help = format!(
+            "write the term, its degree and the number of rows: `against: [{REJECTED_EXAMPLE}]`"
+        );
         let items = node.items(&what, &help, findings).unwrap_or_default();
         for item in items {
             if let Some((rejected, term, degree)) = rejected(&what, item, findings) {
@@ -181,8 +185,22 @@ fn one(
             }
         }
     }
-    (found.rule, spans.weight) = parse(text?.words(&what, HELP, findings)?, owner, findings)?;
+    (found.rule, spans.weight) = parse(text?.words(&what, HELP, findings)?, known, findings)?;
     Some(found)
+}
+
+/// Returns the name of a variable, with its terms in the order of their highest degrees.
+fn known_variable(variable: &Variable) -> KnownVariable<'_> {
+    let terms = variable.terms.iter().map(|term| {
+        let (first, last) = variable.plateau(&term.membership_function);
+        (first + last, term.name.as_str())
+    });
+    let mut terms: Vec<(f64, &str)> = terms.collect();
+    terms.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    KnownVariable {
+        name: &variable.name,
+        terms: terms.into_iter().map(|(_, name)| name).collect(),
+    }
 }
 
 /// Reports a rule that a colon turns into a mapping: `RULE 4 : IF ...`, or `IF ... THEN speed IS fast: why`.
@@ -207,6 +225,10 @@ fn colon(what: &str, key: &Node, value: &Node) -> Option<Diagnostic> {
         key.contains(',') && key.chars().all(is_sign)
     };
     let after_keyword = keyword.map(|keyword| format!("remove the colon after `{keyword}`"));
+    let remark = format!(
+        "remove the colon, or turn the text into a comment: `# {}`",
+        value.as_text().unwrap_or("...")
+    );
     let (message, help) = if let Some(help) = after_keyword.as_deref().filter(|_| is_rule(key)) {
         (format!("{what} contains a colon"), help)
     } else if key.as_text().is_some_and(is_of_fis) {
@@ -215,11 +237,10 @@ fn colon(what: &str, key: &Node, value: &Node) -> Option<Diagnostic> {
     } else if let Some(help) = in_place_of_then(key, value).filter(|_| is_rule(key)) {
         (format!("{what} contains a colon"), help)
     } else if is_rule(key) {
-        let help = "put the rule in quotes, or write a remark after `#`";
-        (format!("{what} contains a colon"), help)
+        (format!("{what} contains a colon"), remark.as_str())
     } else if is_rule(value) && !matches!(&key.value, Value::Scalar(key) if key.text == "rule") {
         let help = "rules have no names or numbers; write `- IF ... THEN ...`";
-        (format!("{what} has a name before it"), help)
+        (format!("{what} starts with a name"), help)
     } else {
         return None;
     };
@@ -245,8 +266,19 @@ fn rejected(
     node: &Node,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<(RejectedConsequent, Range<usize>, Range<usize>)> {
-    let help = &format!("write `{REJECTED_EXAMPLE}`");
-    let fields = node.fields(what, &["term", "degree", "support"], help, findings)?;
+    let fields = node.fields(
+        what,
+        &["term", "degree", "support"],
+        &format!("write `{REJECTED_EXAMPLE}`"),
+        findings,
+    )?;
+    let written = |key: &str, example: &str| fields.get(key).map_or(example.into(), Node::to_line);
+    let help = &format!(
+        "write `{{term: {}, degree: {}, support: {}}}`",
+        written("term", "high"),
+        written("degree", "0.4"),
+        written("support", "3")
+    );
     let term = fields.require("term", help, findings);
     let term_span = term.map_or(0..0, |node| node.span.clone());
     let term = term.and_then(|node| node.words(&format!("the term in {what}"), help, findings));
@@ -268,10 +300,10 @@ fn rejected(
 /// document.
 fn parse(
     scalar: &Scalar,
-    owner: Owner<'_>,
+    known: KnownNames<'_>,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<(rule::Rule, Range<usize>)> {
-    match rule::parse_with_weight(&scalar.text, owner) {
+    match rule::parse_with_weight(&scalar.text, known) {
         Ok((mut rule, weight)) => {
             rule.names_mut(&mut |name| name.span = scalar.span(name.span.clone()));
             Some((rule, scalar.span(weight)))

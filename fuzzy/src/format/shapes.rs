@@ -31,10 +31,14 @@ pub(super) fn read(
         let message = format!("{term} has no membership function");
         findings.push(
             Diagnostic::error("missing-key", spans.name.clone(), message)
-                .help("write one: `{triangle: [0, 1, 2]}`"),
+                .help("write a membership function, such as `triangle: [0, 1, 2]`"),
         );
         return None;
     };
+    if let Some(finding) = without_brackets(shape, fields) {
+        findings.push(finding);
+        return None;
+    }
     let known = MembershipFunction::FORMS.iter().map(|form| form.name);
     let known = known.chain(["piecewise", "function", "linear"]);
     if !known.clone().any(|name| name == shape.key) {
@@ -46,10 +50,14 @@ pub(super) fn read(
         );
         finding.help = match &shape.value.value {
             // For example `{type: triangle, points: [0, 1, 2]}`.
-            Value::Scalar(name) if known.clone().any(|known| known == name.text) => Some(format!(
-                "write the membership function as the key: `{{{}: ...}}`",
-                name.text
-            )),
+            Value::Scalar(name) if known.clone().any(|known| known == name.text) => {
+                let parameters = shapes.next().map(|other| other.value.to_line());
+                Some(format!(
+                    "write the membership function as the key: `{{{}: {}}}`",
+                    name.text,
+                    parameters.unwrap_or_else(|| "...".into())
+                ))
+            }
             _ => upper_and_lower(fields).or_else(|| suggest(shape.key, known)),
         };
         findings.push(finding);
@@ -62,7 +70,7 @@ pub(super) fn read(
             .copied()
             .or_else(|| nearest(second.key, beside))
         {
-            let message = format!("{term} has no key `{}`", second.key);
+            let message = format!("unknown key `{}` in {term}", second.key);
             let finding = Diagnostic::error("unknown-key", second.key_span.clone(), message);
             findings.push(finding.help(format!("did you mean `{key}`?")));
             return None;
@@ -86,8 +94,8 @@ pub(super) fn read(
         let message = format!("{term} has a second membership function, `{}`", second.key);
         findings.push(
             Diagnostic::error("duplicate-key", second.key_span.clone(), message)
-                .related(shape.key_span.clone(), "the first one")
-                .help("a term has one membership function; write two terms for two functions"),
+                .related(shape.key_span.clone(), "first defined here")
+                .help("keep one membership function, or write two terms"),
         );
     }
     match shape.key {
@@ -110,7 +118,32 @@ fn upper_and_lower(fields: &Fields<'_>) -> Option<String> {
         Some(format!("`{}` in place of `{}`", here.first()?, entry.key))
     });
     let pairs: Vec<String> = pairs.collect();
-    (!pairs.is_empty()).then(|| format!("write {}", pairs.join(", ")))
+    (!pairs.is_empty()).then(|| format!("write {}", pairs.join(" and ")))
+}
+
+/// Returns a finding for parameters without brackets, which YAML reads as keys: `{triangle: 0, 10, 20}`, or
+/// `{triangle(0, 10, 20)}`.
+fn without_brackets(shape: &Entry<'_>, fields: &Fields<'_>) -> Option<Diagnostic> {
+    let mut others = fields.entries().iter().skip(1);
+    let (name, first) = match shape.key.split_once('(') {
+        Some((name, first)) if shape.value.is_null() => (name, first),
+        _ => (shape.key, shape.value.as_number_text()?),
+    };
+    let forms = MembershipFunction::FORMS.iter();
+    let form = forms
+        .clone()
+        .find(|form| form.name == name && form.as_list())?;
+    let is_rest = |entry: &Entry<'_>| {
+        entry.value.is_null() && entry.key.trim_end_matches(')').parse::<f64>().is_ok()
+    };
+    let rest: Vec<&Entry<'_>> = others.by_ref().take_while(|entry| is_rest(entry)).collect();
+    let last = rest.last()?;
+    let numbers = rest.iter().map(|entry| entry.key.trim_end_matches(')'));
+    let numbers: Vec<&str> = core::iter::once(first).chain(numbers).collect();
+    let message = format!("the numbers of the {} are not in brackets", form.name);
+    let span = shape.key_span.start..last.key_span.end;
+    let help = format!("write `{}: [{}]`", form.name, numbers.join(", "));
+    Some(Diagnostic::error("wrong-type", span, message).help(help))
 }
 
 fn by_form(
@@ -140,6 +173,12 @@ fn by_form(
             if fields.unknown().next().is_some() && findings.len() > before + 1 {
                 findings.truncate(before);
                 findings.push(other_parameters(form, &fields));
+            }
+            // The suggestion for a missing parameter contains the numbers of the others.
+            for finding in findings.iter_mut().skip(before) {
+                if finding.code == "missing-key" {
+                    finding.help = Some(completed(form, &found));
+                }
             }
             for (parameter, node) in names.iter().zip(found) {
                 read(parameter, node?, findings);
@@ -181,7 +220,20 @@ fn by_form(
                 let other = other.map(|other| format!("write `{other}: [{}]`", numbers.join(", ")));
                 finding.help = Node::list_advice(items, names.len()).or(other);
             }
-            finding.help.get_or_insert_with(|| spelling(form));
+            let pair = match (numbers.as_slice(), names.as_slice()) {
+                ([a, b], [first, second]) if !form.as_list() => {
+                    let exchanged = match a == b {
+                        true => String::new(),
+                        false => format!(" or `{{{first}: {b}, {second}: {a}}}`"),
+                    };
+                    Some(format!(
+                        "write the parameters by name, since programs differ in their order: `{name}: {{{first}: {a}, {second}: {b}}}`{exchanged}"
+                    ))
+                }
+                _ => None,
+            };
+            let help = finding.help.take().or(pair);
+            finding.help = Some(help.unwrap_or_else(|| spelling(form)));
             findings.push(finding);
             return None;
         }
@@ -192,7 +244,20 @@ fn by_form(
     (form.build)(&values)
 }
 
-/// Returns a single finding for several parameters with unknown names, such as `{low: 1, mid: 2, high: 3}`.
+/// Returns the notation of a shape with the parameters that were found; a missing one is 1.
+fn completed(form: &ShapeForm, found: &[Option<&Node>]) -> String {
+    let named = form.names().into_iter().zip(found);
+    let named: Vec<String> = named
+        .map(|(name, node)| format!("{name}: {}", node.map_or("1".into(), Node::to_line)))
+        .collect();
+    format!(
+        "write all parameters, such as `{}: {{{}}}`",
+        form.name,
+        named.join(", ")
+    )
+}
+
+/// Returns a single finding for several parameters with other names, such as `{low: 1, mid: 2, high: 3}`.
 fn other_parameters(form: &ShapeForm, fields: &Fields<'_>) -> Diagnostic {
     let names = form.names();
     let unknown: Vec<&Entry<'_>> = fields.unknown().collect();
@@ -255,7 +320,7 @@ fn spelling(form: &ShapeForm) -> String {
         [only] => format!("write `{}: {only}` with a number for `{only}`", form.name),
         _ if form.as_list() => format!("write `{}: [{list}]`, from left to right", form.name),
         _ => {
-            let named: Vec<String> = names.iter().map(|p| format!("{p}: 1")).collect();
+            let named: Vec<String> = names.iter().map(|p| format!("{p}: ...")).collect();
             format!(
                 "write the parameters by name, since programs differ in their order: `{}: {{{}}}`",
                 form.name,
@@ -265,7 +330,8 @@ fn spelling(form: &ShapeForm) -> String {
     }
 }
 
-const POINTS_HELP: &str = "write `piecewise: [[x, degree], [x, degree]]`";
+const POINTS_HELP: &str =
+    "write each point as a position and a degree: `piecewise: [[x, degree], [x, degree]]`";
 
 fn points(
     term: &str,
@@ -330,7 +396,7 @@ fn function(
 ) -> Option<MembershipFunction> {
     let Value::Scalar(scalar) = &node.value else {
         let finding = node.unexpected(&format!("a formula for {term}"));
-        findings.push(finding.help("write `function: 2 * speed^2 + 1`"));
+        findings.push(finding.help("write a formula, such as `function: 2 * speed^2 + 1`"));
         return None;
     };
     match scalar.text.parse::<Formula>() {
@@ -362,9 +428,9 @@ fn linear(
         .as_text()
         .filter(|text| text.parse::<Formula>().is_ok())
     {
-        Some(formula) => format!("a formula is a function: write `function: {formula}`"),
+        Some(formula) => format!("for a formula, write `function: {formula}`"),
         None => {
-            "write a factor for each input and a constant: `linear: {temperature: 2, constant: 5}`"
+            "write a coefficient for each input and a constant: `linear: {temperature: 2, constant: 5}`"
                 .into()
         }
     };
@@ -426,22 +492,6 @@ pub(super) fn write(shape: &MembershipFunction) -> (&'static str, Node) {
 
 /// Formats a membership function as in a file, on one line: `triangle: [0, 2, 4]`.
 pub fn text(shape: &MembershipFunction) -> String {
-    fn flow(node: &Node) -> String {
-        match &node.value {
-            Value::Scalar(scalar) => scalar.text.clone(),
-            Value::List(items) => {
-                let items: Vec<String> = items.iter().map(flow).collect();
-                format!("[{}]", items.join(", "))
-            }
-            Value::Mapping(pairs) => {
-                let pairs = pairs.iter();
-                let pairs: Vec<String> = pairs
-                    .map(|(k, v)| format!("{}: {}", flow(k), flow(v)))
-                    .collect();
-                format!("{{{}}}", pairs.join(", "))
-            }
-        }
-    }
     let (name, parameters) = write(shape);
-    format!("{name}: {}", flow(&parameters))
+    format!("{name}: {}", parameters.to_line())
 }

@@ -23,7 +23,8 @@ pub(super) fn read(
     spans.steps = node.span.clone();
     let Value::Mapping(_) = &node.value else {
         let finding = node.unexpected(&format!("terms with limits for the steps of {what}"));
-        findings.push(finding.help(HELP));
+        let help = of_names(node, variable);
+        findings.push(finding.help(help.unwrap_or_else(|| HELP.into())));
         return;
     };
     let before = findings.len();
@@ -71,6 +72,30 @@ pub(super) fn read(
         _ => names.map(unread).collect(),
     };
     spans.terms_unread = variable.terms.is_empty();
+}
+
+/// Returns a suggestion for a list of names, `[low, high]`, with evenly spaced limits.
+fn of_names(node: &Node, variable: &Variable) -> Option<String> {
+    let Value::List(items) = &node.value else {
+        return None;
+    };
+    let names: Vec<&str> = items.iter().map(Node::as_text).collect::<Option<_>>()?;
+    if items.iter().any(|item| item.as_number_text().is_some()) {
+        return None;
+    }
+    let (last, below) = names.split_last()?;
+    let width = (variable.high - variable.low) / names.len() as f64;
+    let limit = |i: usize| libm::round(1e3 * (variable.low + width * (i + 1) as f64)) / 1e3;
+    let terms = below.iter().enumerate();
+    let terms: Vec<String> = terms
+        .map(|(i, name)| format!("{name}: {}", limit(i)))
+        .collect();
+    (width > 0.0 && width.is_finite() && !terms.is_empty()).then(|| {
+        let terms = terms.join(", ");
+        format!(
+            "write the limit of each term except the last, such as `steps: {{{terms}, {last}: }}`"
+        )
+    })
 }
 
 /// Reads the limit of a term: a number, null, or `{below: 36}` as in the lists of serde.
@@ -211,7 +236,9 @@ fn check(
     };
     if steps.len() < 2 {
         let message = format!("the steps of {what} have fewer than two terms");
-        wrong(node.span.clone(), "wrong-parameter", message, HELP);
+        let help =
+            "add a term: each term except the last has a limit, such as `steps: {low: 10, high: }`";
+        wrong(node.span.clone(), "wrong-parameter", message, help);
         return;
     }
     if let Some((entry, Some(limit))) = steps.last() {
@@ -231,7 +258,10 @@ fn check(
         match (below, above) {
             (None, None) => {
                 let message = format!("the terms `{other}` and `{name}` of {what} have no limit");
-                wrong(right.key_span.clone(), "wrong-parameter", message, HELP);
+                let help = format!(
+                    "write a limit for `{other}`, such as `{other}: 10`; only the last term has none"
+                );
+                wrong(right.key_span.clone(), "wrong-parameter", message, &help);
                 break;
             }
             (Some(below), Some(above)) if below == above => {

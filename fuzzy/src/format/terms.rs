@@ -13,7 +13,7 @@ use crate::{
     tree::{Entry, Fields, Node, Value},
 };
 
-const TERM_HELP: &str = "write one: `{triangle: [0, 1, 2]}`";
+const TERM_HELP: &str = "write a membership function, such as `{triangle: [0, 1, 2]}`";
 
 /// Reads `{low: {triangle: [0, 1, 2], height: 0.8}}`.
 pub(super) fn terms(
@@ -23,11 +23,23 @@ pub(super) fn terms(
     spans: &mut VariableSpans,
     findings: &mut Vec<Diagnostic>,
 ) {
-    let help =
-        "write `terms: {low: {triangle: [0, 1, 2]}}`, or `partition: [low, high]` for even spacing";
-    let Some(entries) = node.entries(what, "term", help, findings) else {
+    let Value::Mapping(_) = &node.value else {
+        let names = match &node.value {
+            Value::List(items) => items.iter().filter_map(Node::as_text).collect(),
+            _ => Vec::new(),
+        };
+        let first = names.first().copied().unwrap_or("low");
+        let all = match names.len() {
+            0 | 1 => "low, high".into(),
+            _ => names.join(", "),
+        };
+        let finding = node.unexpected(&format!("a mapping for the terms of {what}"));
+        findings.push(finding.help(format!(
+            "for even spacing write `partition: [{all}]`, otherwise give each term a membership function: `terms: {{{first}: {{triangle: [0, 1, 2]}}, ...}}`"
+        )));
         return;
     };
+    let entries = node.entries(what, "term", "", findings).unwrap_or_default();
     // An entry with a repeated name is rejected. Its author probably meant another name, which rules may use, so
     // unknown terms are not reported.
     spans.terms_unread = entries.len() < node.children();
@@ -48,12 +60,71 @@ pub(super) fn terms(
         {
             finding.help = Some(format!("write `{}: {{constant: {number}}}`", entry.key));
         }
+        if let Some(number) = entry.value.as_number_text()
+            && let (low, high) = (variable.low, variable.high)
+            && number
+                .parse()
+                .is_ok_and(|number| low <= number && number <= high)
+            && entries
+                .iter()
+                .any(|other| matches!(other.value.value, Value::Mapping(_)))
+            && !entries.iter().any(is_computed)
+            && let Some(finding) = findings.get_mut(before)
+        {
+            finding.help = Some(format!(
+                "write a membership function, such as `{}: {{triangle: [{low}, {number}, {high}]}}`",
+                entry.key
+            ));
+        }
         here.unread = term.is_none();
         variable
             .terms
             .push(term.unwrap_or_else(|| unread(entry.key)));
         spans.terms.push(here);
     }
+    if !node.span.is_empty() {
+        findings.extend(reversed(what, variable, spans));
+    }
+}
+
+/// Notes terms that are written from right to left: their shoulders or the signs of their slopes may be exchanged. Trees
+/// of formats that sort keys have no positions, and are not examined.
+fn reversed(what: &str, variable: &Variable, spans: &VariableSpans) -> Option<Diagnostic> {
+    const FEWEST: usize = 3;
+    let shapes = || variable.terms.iter().map(|term| &term.membership_function);
+    let (first, last) = (shapes().next()?, shapes().next_back()?);
+    let is_read = spans.terms.iter().all(|term| !term.unread) && variable.low < variable.high;
+    let are_ends =
+        first.is_monotone() && last.is_monotone() && shapes().all(|it| it.number().is_none());
+    if !is_read || !are_ends || variable.terms.len() < FEWEST {
+        return None;
+    }
+    let middles = shapes().map(|shape| {
+        let (left, right) = variable.plateau(shape);
+        left + right
+    });
+    let middles: Vec<f64> = middles.collect();
+    if !middles.is_sorted_by(|left, right| left > right) {
+        return None;
+    }
+    let (name, other) = (&variable.terms.first()?.name, &variable.terms.last()?.name);
+    let message = format!(
+        "the terms of {what} are written from right to left: `{name}` is highest on the right, `{other}` on the left"
+    );
+    let finding = Diagnostic::note(
+        "inverted-parameters",
+        spans.terms.first()?.name.clone(),
+        message,
+    );
+    let hint = match first {
+        MembershipFunction::Sigmoid { .. } => {
+            "a `sigmoid` with a negative slope is highest on the left"
+        }
+        _ => "a `left_shoulder` is 1 on the left, a `right_shoulder` on the right",
+    };
+    Some(finding.help(format!(
+        "write the terms from left to right; if the shapes are wrong, correct them: {hint}"
+    )))
 }
 
 fn term(
@@ -67,16 +138,29 @@ fn term(
     let Value::Mapping(pairs) = &entry.value.value else {
         let expected = format!("a membership function for {term}");
         let finding = entry.value.unexpected(&expected);
-        findings.push(finding.help(match &entry.value.value {
-            Value::List(items) if items.iter().any(|item| matches!(item.value, Value::Mapping(_))) => {
-                "name both: `{upper: {triangle: [0, 2, 4]}, lower: {triangle: [1, 2, 3]}}`"
+        let numbers = entry.value.to_line();
+        let items = match &entry.value.value {
+            Value::List(items) => items.as_slice(),
+            _ => &[],
+        };
+        let has_functions = items.iter().any(|item| item.children() > 0);
+        findings.push(finding.help(match items {
+            [upper, lower] if has_functions => format!(
+                "name both membership functions: `{{upper: {}, lower: {}}}`",
+                upper.to_line(),
+                lower.to_line()
+            ),
+            _ if has_functions => footprints::BOTH.into(),
+            [_, _] => format!(
+                "name the membership function: `left_shoulder: {numbers}`, `right_shoulder: {numbers}` or `rectangle: {numbers}`"
+            ),
+            [_, _, _] => {
+                format!("name the membership function: `{}: {{triangle: {numbers}}}`", entry.key)
             }
-            Value::List(items) if items.len() == 4 => "name it: `{trapezoid: [0, 1, 2, 3]}`",
-            Value::List(_) => "name it: `{triangle: [0, 1, 2]}`",
-            Value::Scalar(scalar) if scalar.as_number().is_some() => {
-                "numbers without a membership function are peaks: `partition: {low: 0, high: 10}` in place of `terms`; a term is a membership function: `{triangle: [0, 1, 2]}`"
+            [_, _, _, _] => {
+                format!("name the membership function: `{}: {{trapezoid: {numbers}}}`", entry.key)
             }
-            _ => TERM_HELP,
+            _ => TERM_HELP.into(),
         }));
         return None;
     };
@@ -165,29 +249,48 @@ fn interval(
     spans: &mut TermSpans,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<Term> {
-    const HELP: &str = "write both membership functions: `{upper: {triangle: [0, 2, 4]}, lower: {triangle: [1, 2, 3]}}`";
     let mut others = fields.entries().iter();
     let other = others.find(|entry| !["upper", "lower"].contains(&entry.key));
     if let Some(other) = other {
         let message = format!("{term} has `{}` beside `upper` and `lower`", other.key);
-        let help = "`upper` and `lower` each contain a membership function and its height: `{upper: {triangle: [0, 2, 4]}, lower: {triangle: [1, 2, 3], height: 0.8}}`";
+        let help = match other.key {
+            "height" => format!(
+                "move `height: {}` into `upper`, into `lower`, or into both",
+                other.value.to_line()
+            ),
+            _ => footprints::BOTH.into(),
+        };
         let finding = Diagnostic::error("unknown-key", other.key_span.clone(), message);
         findings.push(finding.help(help));
     }
-    let upper = fields.require("upper", HELP, findings);
-    let lower = fields.require("lower", HELP, findings);
+    let missing = |key: &str| {
+        format!("add the {key} membership function, such as `{key}: {{triangle: [0, 2, 4]}}`")
+    };
+    let upper = fields.require("upper", &missing("upper"), findings);
+    let lower = fields.require("lower", &missing("lower"), findings);
     let mut lower_spans = TermSpans {
         name: spans.name.clone(),
         ..TermSpans::default()
     };
+    let beside: Vec<&Node> = upper.into_iter().chain(lower).collect();
     let mut read = |which: &str, node: Option<&Node>, spans: &mut TermSpans| {
         let what = format!("the {which} membership function of {term}");
         let node = node?;
         let Value::Mapping(pairs) = &node.value else {
-            findings.push(node.unexpected(&what).help(HELP));
+            // The other membership function probably has the same shape.
+            let shape = beside.iter().find_map(|other| match &other.value {
+                Value::Mapping(pairs) => keys_of(pairs).first().copied(),
+                _ => None,
+            });
+            let shape = shape.unwrap_or("triangle");
+            let help = format!(
+                "name the membership function: `{which}: {{{shape}: {}}}`",
+                node.to_line()
+            );
+            findings.push(node.unexpected(&what).help(help));
             return None;
         };
-        let fields = node.fields(&what, &keys_of(pairs), HELP, findings)?;
+        let fields = node.fields(&what, &keys_of(pairs), footprints::BOTH, findings)?;
         if footprints::misplaced(&what, &fields, findings) {
             return None;
         }

@@ -413,10 +413,10 @@ provenance:
         .replace("[28, 9]", "[28]")
         .replace("before: 3", "before: low");
     insta::assert_snapshot!(crate::yaml::parse(&wrong).unwrap_err().to_string(), @r"
-    15:6: error[unknown-key]: step 1 of the provenance has no key `comand`
+    15:6: error[unknown-key]: unknown key `comand` in step 1 of the provenance
       help: did you mean `command`?
     21:37: error[wrong-type]: expected a number for `before` of the loss of step 2 of the provenance, found `low`
-      help: write a number such as `0.5`
+      help: write a number
     22:12: error[wrong-type]: expected two numbers for `rules` of step 2 of the provenance, found a list
       help: write how many there were before and after: `[28, 9]`
     ");

@@ -7,7 +7,7 @@ use super::{
     Spans, TermSpans, VariableSpans, footprints,
     notation::{
         bare_numbers, colons_without_space, likely_defuzzifier, other_terms, peaks_in_list,
-        suggestion_for_word,
+        suggestion_for_word, without_peaks,
     },
     optional_text, steps,
     terms::{terms, unread},
@@ -15,6 +15,7 @@ use super::{
 };
 use crate::{
     diagnostic::{Diagnostic, all_of, duplicate},
+    foreign,
     model::{
         Defuzzifier, NoRuleFires, Output, Sampling, SamplingRule, TypeReduction, Variable,
         between_peaks, even_peaks,
@@ -47,11 +48,20 @@ pub(super) const OUTPUT_KEYS: [&str; 13] = [
     "type_reduction",
 ];
 
+/// YAML's key for values that are taken from another mapping.
+const MERGE: &str = "<<";
+
 /// Returns the suggestion for how to write the inputs or the outputs; `key` is `inputs` or `outputs`.
 fn variables_help(key: &str) -> String {
     format!(
         "write each by its name: `{key}: {{speed: {{range: [0, 10], partition: [low, high]}}}}`"
     )
+}
+
+/// Returns whether a word is a key of an input or an output.
+#[cfg(feature = "yaml")]
+pub(crate) fn is_key_of_variable(key: &str) -> bool {
+    OUTPUT_KEYS.contains(&key)
 }
 
 /// Returns the suggestion for how to write a variable.
@@ -92,17 +102,18 @@ fn entries<'n>(
     let is_variable = |entry: &&Entry<'_>| matches!(entry.value.value, Value::Mapping(_));
     let has_range = |entry: &Entry<'_>| entry.value.child("range").is_some();
     let kind = key.trim_end_matches('s');
-    let nameless = entries
+    let is_nameless = entries
         .iter()
-        .find(|entry| entry.key == "range" && !is_variable(entry));
-    if let Some(range) = nameless
+        .any(|entry| entry.key == "range" && !is_variable(&entry));
+    if let Some(first) = entries.first()
+        && is_nameless
         && entries.iter().all(|entry| keys.contains(&entry.key))
     {
-        let message = format!("`{key}` has the keys of an {kind}, but no name");
+        let message = format!("`{key}` has the keys of an {kind}, but not its name");
         let help = format!(
-            "write a name above them, and indent them below it: `{key}: {{speed: {{range: [0, 10], ...}}}}`"
+            "write the name of the {kind} above these keys, and indent the keys: `{key}: {{speed: {{range: [0, 10], ...}}}}`"
         );
-        findings.push(Diagnostic::error("missing-key", range.key_span.clone(), message).help(help));
+        findings.push(Diagnostic::error("missing-key", first.key_span.clone(), message).help(help));
         return None;
     }
     let of_rule_set = |entry: &&Entry<'_>| super::KEYS.contains(&entry.key) && !has_range(entry);
@@ -135,12 +146,13 @@ fn one<'n>(
     let has_repeated = findings.iter().skip(before).any(repeats);
     let mut unknown = fields.iter().flat_map(Fields::unknown);
     let nested = unknown.find(|other| {
-        other.value.child("range").is_some() || other.value.is_null() && has_repeated
+        other.key != MERGE
+            && (other.value.child("range").is_some() || other.value.is_null() && has_repeated)
     });
     if let Some(nested) = nested {
         findings.truncate(before);
         let message = format!(
-            "{what} has no key `{}`, which looks like an {kind}",
+            "unknown key `{}` in {what}; it looks like an {kind}",
             nested.key
         );
         let finding = Diagnostic::error("unknown-key", nested.key_span.clone(), message);
@@ -170,7 +182,7 @@ pub(super) fn outputs(
             type_reduction: TypeReduction::Exact,
         };
         if let Some(fields) = fields {
-            if let Some(node) = fields.get("defuzzifier") {
+            if let Some(node) = fields.get_or_misspelt("defuzzifier") {
                 let key = format!("the defuzzifier of {what}");
                 let word = node.choice(&key, &DEFUZZIFIERS, findings);
                 // An unknown word is replaced by a defuzzifier that fits the terms, so that the terms are not reported
@@ -211,7 +223,8 @@ fn samples(
     span: &mut Range<usize>,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<Sampling> {
-    let help = "write `samples: {midpoint: 1000}` or `{trapezoid: 1001}`";
+    let number = node.as_number_text().unwrap_or("1000");
+    let help = &format!("write `samples: {{midpoint: {number}}}` or `{{trapezoid: {number}}}`");
     let Value::Mapping(_) = &node.value else {
         let finding = node.unexpected("a sampling rule and its number of samples");
         findings.push(finding.help(help));
@@ -228,7 +241,12 @@ fn samples(
         }
     };
     *span = number.span.clone();
-    let samples = number.whole("the number of samples", 0, findings)?;
+    let before = findings.len();
+    let samples = number.whole("the number of samples", 0, findings);
+    if let Some(finding) = findings.get_mut(before) {
+        finding.help = Some(help.into());
+    }
+    let samples = samples?;
     Some(Sampling {
         samples: usize::try_from(samples).unwrap_or(usize::MAX),
         rule,
@@ -250,7 +268,7 @@ fn no_rule_fires(
     if let Value::Mapping(_) = &node.value {
         let fields = node.fields(&key, &["value", "previous"], NO_RULE_HELP, findings)?;
         let [entry] = fields.entries() else {
-            let message = format!("{key} has one key");
+            let message = format!("{key} takes one of `value` and `previous`");
             findings.push(
                 Diagnostic::error("wrong-type", node.span.clone(), message).help(NO_RULE_HELP),
             );
@@ -270,8 +288,10 @@ fn no_rule_fires(
     ];
     if let Some(number) = node.as_number_text() {
         findings.push(
-            node.unexpected(&format!("`undefined`, `error` or a mapping for {key}"))
-                .help(format!("write `{{value: {number}}}`")),
+            node.unexpected(&format!(
+                "`undefined`, `error`, `previous` or a mapping for {key}"
+            ))
+            .help(format!("write `{{value: {number}}}`")),
         );
         return None;
     }
@@ -305,12 +325,15 @@ fn variable(
     };
     variable.description = optional_text(fields, "description", findings);
     variable.unit = optional_text(fields, "unit", findings);
-    let help = "write the minimum and the maximum: `range: [0, 1]`";
+    refine(fields, findings);
     if let Some(finding) = split_range(what, fields) {
         // The second number is read as a key without a value.
         findings.retain(|other| other.span.end != finding.span.end);
         findings.push(finding);
-    } else if let Some(node) = fields.require("range", help, findings)
+    } else if let Some((finding, last)) = two_keys(what, fields) {
+        findings.retain(|other| other.span != finding.span && other.span != last);
+        findings.push(finding);
+    } else if let Some(node) = fields.require("range", RANGE_HELP, findings)
         && let Some((low, high)) = range(what, node, findings)
     {
         (variable.low, variable.high) = (low, high);
@@ -333,7 +356,7 @@ fn variable(
                 "steps" => steps::read,
                 _ => terms,
             };
-            let is_weighted = fields.get("defuzzifier").is_some_and(|node| {
+            let is_weighted = fields.get_or_misspelt("defuzzifier").is_some_and(|node| {
                 node.as_text()
                     .is_some_and(|word| word.starts_with("weighted"))
             });
@@ -355,7 +378,7 @@ fn variable(
                 .entries()
                 .iter()
                 .find(|entry| forms.contains(&entry.key));
-            let help = "write `partition: [low, medium, high]`, or `terms` with a membership function for each";
+            let help = "write `partition: [low, medium, high]`, or `terms` with a membership function for each term";
             fields.require(empty.map_or("terms", |entry| entry.key), help, findings);
             let stray: Vec<&str> = fields.unknown().map(|entry| entry.key).collect();
             if let Some(empty) = empty
@@ -388,25 +411,105 @@ fn variable(
     (variable, spans)
 }
 
+const RANGE_HELP: &str = "write the minimum and the maximum, such as `range: [0, 1]`";
+
 fn range(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<(f64, f64)> {
-    let help = "write the minimum and the maximum: `range: [0, 1]`";
+    let both = |[low, high]: [&str; 2]| format!("write `range: [{low}, {high}]`");
     let Value::List(ends) = &node.value else {
         let finding = node.unexpected(&format!("two numbers for the range of {what}"));
-        findings.push(match two_numbers(node) {
-            Some([low, high]) => finding.help(format!("write `range: [{low}, {high}]`")),
-            None => finding.help(help),
-        });
+        let help = two_numbers(node).map(both).or_else(|| one_number(node));
+        findings.push(finding.help(help.unwrap_or_else(|| RANGE_HELP.into())));
         return None;
     };
     let [low, high] = ends.as_slice() else {
         let message = format!("the range of {what} takes 2 numbers, not {}", ends.len());
-        let help = Node::list_advice(ends, 2).unwrap_or_else(|| help.into());
+        let help = Node::list_advice(ends, 2).or_else(|| match ends.as_slice() {
+            [only] => two_numbers(only).map(both).or_else(|| one_number(only)),
+            numbers => smallest_and_largest(numbers).map(both),
+        });
+        let help = help.unwrap_or_else(|| RANGE_HELP.into());
         findings.push(Diagnostic::error("wrong-type", node.span.clone(), message).help(help));
         return None;
     };
     let end = format!("the range of {what}");
-    let (low, high) = (low.finite(&end, findings), high.finite(&end, findings));
+    let mut read = |node: &Node, extreme: &str| {
+        let before = findings.len();
+        let number = node.finite(&end, findings);
+        let finding = findings.get_mut(before);
+        if let Some(finding) = finding.filter(|finding| finding.code == "not-finite") {
+            finding.help = Some(format!("write the {extreme} value that you expect"));
+        }
+        number
+    };
+    let (low, high) = (read(low, "smallest"), read(high, "largest"));
     Some((low?, high?))
+}
+
+/// Returns a suggestion for a range of one number, which is probably its maximum.
+fn one_number(node: &Node) -> Option<String> {
+    let text = node.as_number_text()?;
+    let number = text.parse::<f64>().ok()?;
+    let help = "write the minimum and the maximum, such as";
+    (number.is_finite() && number > 0.0).then(|| format!("{help} `range: [0, {text}]`"))
+}
+
+/// Returns a finding for `min: 0` and `max: 40` in place of a range, and the position of the second key.
+fn two_keys(what: &str, fields: &Fields<'_>) -> Option<(Diagnostic, Range<usize>)> {
+    if fields.entry("range").is_some() {
+        return None;
+    }
+    let pairs = [
+        ("min", "max"),
+        ("minimum", "maximum"),
+        ("low", "high"),
+        ("from", "to"),
+    ];
+    let number_at = |key: &str| {
+        let mut unknown = fields.unknown();
+        let entry = unknown.find(|entry| entry.key.eq_ignore_ascii_case(key))?;
+        Some((entry, entry.value.as_number_text()?))
+    };
+    pairs.into_iter().find_map(|(low, high)| {
+        let ((low, from), (high, to)) = (number_at(low)?, number_at(high)?);
+        let message = format!("unknown keys `{}` and `{}` in {what}", low.key, high.key);
+        let finding = Diagnostic::error("unknown-key", low.key_span.clone(), message);
+        let finding = finding.help(format!("write `range: [{from}, {to}]`"));
+        Some((finding, high.key_span.clone()))
+    })
+}
+
+/// Improves the suggestions for unknown keys of a variable whose value does not suit the key that is meant.
+fn refine(fields: &Fields<'_>, findings: &mut [Diagnostic]) {
+    for entry in fields.unknown() {
+        let is_meant = |key| !foreign::equivalents(entry.key, [key]).is_empty();
+        let help = match &entry.value.value {
+            Value::List(_) if is_meant("terms") => "did you mean `partition`?".into(),
+            Value::Scalar(value)
+                if is_meant("when_no_rule_fires") && value.as_number().is_some() =>
+            {
+                format!("write `when_no_rule_fires: {{value: {}}}`", value.text)
+            }
+            _ => continue,
+        };
+        let mut findings = findings.iter_mut();
+        if let Some(finding) = findings.find(|finding| finding.span == entry.key_span) {
+            finding.help = Some(help);
+        }
+    }
+}
+
+/// Returns the smallest and the largest of at least two numbers, for example of `[start, stop, step]`.
+fn smallest_and_largest(numbers: &[Node]) -> Option<[&str; 2]> {
+    let numbers = numbers.iter().map(|node| {
+        let text = node.as_number_text()?;
+        Some((text.parse().ok()?, text))
+    });
+    let numbers: Vec<(f64, &str)> = numbers.collect::<Option<_>>()?;
+    let order = |a: &&(f64, &str), b: &&(f64, &str)| a.0.total_cmp(&b.0);
+    Some([
+        numbers.iter().min_by(order)?.1,
+        numbers.iter().max_by(order)?.1,
+    ])
 }
 
 /// Returns a finding for a range without brackets in a mapping with braces, `range: 0, 40` or `range: (0, 40)`.
@@ -462,6 +565,7 @@ fn partition(
     findings: &mut Vec<Diagnostic>,
 ) {
     spans.partition = node.span.clone();
+    let mut count = node.children();
     let mut names: Vec<(&str, &Node)> = Vec::new();
     let mut seen: BTreeMap<&str, &Node> = BTreeMap::new();
     let mut peaks: Option<Vec<f64>> = None;
@@ -473,6 +577,7 @@ fn partition(
                 findings.push(finding.help(help));
                 return;
             }
+            count = items.len();
             for item in items {
                 let Some(name) = item.words(&format!("a term of {what}"), PARTITION_HELP, findings)
                 else {
@@ -494,13 +599,14 @@ fn partition(
             let entries = node.entries(what, "term", PARTITION_HELP, findings);
             let mut entries = entries.unwrap_or_default();
             if let Some(help) = colons_without_space(&entries) {
-                let message =
-                    format!("the peaks of the partition of {what} are not separated by `: `");
+                let message = format!(
+                    "a name and its peak in the partition of {what} are not separated by `: `"
+                );
                 let span = node.span.clone();
                 findings.push(Diagnostic::error("yaml-syntax", span, message).help(help));
                 return;
             }
-            if let Some(help) = other_terms(&entries) {
+            if let Some(help) = without_peaks(&entries).or_else(|| other_terms(&entries)) {
                 let message = format!("the partition of {what} has no peaks");
                 let span = node.span.clone();
                 findings.push(Diagnostic::error("wrong-type", span, message).help(help));
@@ -518,18 +624,10 @@ fn partition(
                 if matches!(entry.value.value, Value::Mapping(_) | Value::List(_))
                     && let Some(finding) = findings.get_mut(before)
                 {
-                    finding.help = Some(
-                        "a partition has a peak for each term; membership functions are in `terms`"
-                            .into(),
-                    );
-                }
-                // For example `{dry, wet}`.
-                if entries.iter().all(|entry| entry.value.is_null())
-                    && let Some(finding) = findings.get_mut(before)
-                {
-                    let names: Vec<&str> = entries.iter().map(|entry| entry.key).collect();
-                    let names = names.join(", ");
-                    finding.help = Some(format!("for even spacing write a list: `[{names}]`"));
+                    finding.help = Some(format!(
+                        "write a peak, such as `{}: 0`, or give each term a membership function and write `terms` in place of `partition`",
+                        entry.key
+                    ));
                 }
                 // `{warm: 20,5}` is parsed as a term `5` without a peak.
                 if entry.is_rest_of_a_number()
@@ -539,10 +637,14 @@ fn partition(
                         .iter()
                         .take_while(|one| one.key_span != entry.key_span)
                         .last();
-                    finding.help = Some(match whole.and_then(|one| one.value.as_text()) {
-                        Some(whole) => format!("write a decimal point: `{whole}.{}`", entry.key),
-                        None => "a decimal point is written as `.`: `20.5`".into(),
-                    });
+                    if let Some(whole) = whole
+                        && let Some(number) = whole.value.as_text()
+                    {
+                        finding.message = format!("`{number},{}` is not a number", entry.key);
+                        finding.help =
+                            Some(format!("write a decimal point: `{number}.{}`", entry.key));
+                        finding.span = whole.value.span.start..entry.key_span.end;
+                    }
                 }
             }
             if found.len() == entries.len() {
@@ -570,13 +672,15 @@ fn partition(
         }
     }
     if names.len() < 2 {
+        peaks = None;
+    }
+    if count < 2 {
         let message = format!("the partition of {what} has fewer than two terms");
         findings.push(
             Diagnostic::error("wrong-parameter", node.span.clone(), message).help(
                 "add a term, or write the only one with its membership function under `terms`",
             ),
         );
-        peaks = None;
     }
     let names = names.iter().map(|(name, _)| *name);
     match peaks {

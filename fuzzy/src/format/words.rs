@@ -1,10 +1,10 @@
 //! The names of operators and defuzzifiers in the format.
 
-use alloc::vec::Vec;
+use alloc::{format, vec::Vec};
 
 use crate::{
     diagnostic::Diagnostic,
-    model::{Aggregation, Conjunction, Defuzzifier, Disjunction, Operators, TypeReduction},
+    model::{Aggregation, Conjunction, Disjunction, Operators, TypeReduction},
     tree::Node,
 };
 
@@ -39,16 +39,7 @@ pub(super) const AGGREGATIONS: [(&str, Aggregation); Aggregation::ALL.len()] = [
     ("nilpotent_maximum", Aggregation::NilpotentMaximum),
 ];
 
-pub(super) const DEFUZZIFIERS: [(&str, Defuzzifier); Defuzzifier::ALL.len()] = [
-    ("centroid", Defuzzifier::Centroid),
-    ("bisector", Defuzzifier::Bisector),
-    ("smallest_of_maxima", Defuzzifier::SmallestOfMaxima),
-    ("mean_of_maxima", Defuzzifier::MeanOfMaxima),
-    ("largest_of_maxima", Defuzzifier::LargestOfMaxima),
-    ("weighted_average", Defuzzifier::WeightedAverage),
-    ("weighted_sum", Defuzzifier::WeightedSum),
-    ("tsukamoto", Defuzzifier::Tsukamoto),
-];
+pub(super) use crate::model::DEFUZZIFIERS;
 
 pub(super) const TYPE_REDUCTIONS: [(&str, TypeReduction); TypeReduction::ALL.len()] = [
     ("exact", TypeReduction::Exact),
@@ -78,11 +69,34 @@ pub(super) fn operators(
     otherwise: Operators,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<Operators> {
-    let help = "write `operators: {and: product, or: maximum}`, with the operators that differ from the defaults";
-    let fields = node.fields(what, keys, help, findings)?;
+    let word = node.as_text().unwrap_or("");
+    let key = match CONJUNCTIONS.iter().any(|(known, _)| *known == word) {
+        true => Some("and"),
+        false => DISJUNCTIONS
+            .iter()
+            .any(|(known, _)| *known == word)
+            .then_some("or"),
+    };
+    let help = match key {
+        Some(key) => format!("write which operator it is: `operators: {{{key}: {word}}}`"),
+        None => "write `operators: {and: product, or: maximum}`, with the operators that differ from the defaults".into(),
+    };
+    let fields = node.fields(what, keys, &help, findings)?;
     let mut operators = otherwise;
     if let Some(node) = fields.get("and") {
+        let before = findings.len();
         let word = node.choice("the operator `and`", &CONJUNCTIONS, findings);
+        let word_of_or = node.as_text();
+        let is_or = DISJUNCTIONS
+            .iter()
+            .any(|(known, _)| Some(*known) == word_of_or);
+        if let Some(finding) = findings.get_mut(before)
+            && let Some(word) = word_of_or.filter(|_| is_or)
+        {
+            finding.help = Some(format!(
+                "`{word}` is an operator for `or`: write `or: {word}`"
+            ));
+        }
         operators.and = word.unwrap_or(operators.and);
     }
     if let Some(node) = fields.get("or") {

@@ -379,13 +379,18 @@ const HEDGES: [&str; 4] = ["very", "somewhat", "extremely", "seldom"];
 
 /// The suggestion for conditional expressions such as `c ? a : b`, which formulas do not support.
 const CONDITIONAL_HELP: &str =
-    "a comparison is 1 or 0: for a if c is true, else b, write `(c) * a + (1 - (c)) * b`";
+    "write `(condition) * a + (1 - (condition)) * b`: a condition is 1 if it is true, otherwise 0";
 
-/// Returns whether a number with `%` is before this position, as in `50% * x`.
-fn percent(text: &str, start: usize) -> bool {
-    let before = text.get(..start).unwrap_or("").trim_end();
-    let number = before.strip_suffix('%').map(str::trim_end);
-    number.is_some_and(|number| number.ends_with(|c: char| c.is_ascii_digit()))
+/// Returns a suggestion if a number with `%` is before this position, as in `50% * x`.
+fn percent(text: &str, start: usize) -> Option<String> {
+    let before = text.get(..start)?.trim_end();
+    let number = before.strip_suffix('%')?.trim_end();
+    let from = number.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.');
+    let percent = number.get(from.len()..)?.parse::<f64>().ok()?;
+    let fraction = percent / 100.0;
+    Some(format!(
+        "a number has no `%`: write `{fraction}` for {percent} %"
+    ))
 }
 
 /// Returns the first number with a comma between its digits, with a point in place of the comma.
@@ -429,14 +434,24 @@ impl FormulaMistake<'_> {
         match self.kind {
             FormulaMistakeKind::Operand => {
                 let message = format!("expected a number, a name or `(`, found {shown}");
+                let percent = percent(text, start);
+                let within = rest.strip_prefix('|').and_then(|rest| rest.split_once('|'));
+                let absolute = match within {
+                    Some((inside, _)) => {
+                        format!("write `abs({})` for the absolute value", inside.trim())
+                    }
+                    None => "write `abs(x)` for the absolute value of x".into(),
+                };
                 let help = match found {
                     "" if text.trim().is_empty() => "write a formula, such as `2 * speed^2 + 1`",
                     "" => "add what is missing, or remove the operator",
                     "!" => "write `not`",
                     "+" => "a sign `+` has no effect; remove it",
-                    "|" => "write `abs(x)` for the absolute value of x",
-                    _ if is_keyword(found) => "put it in quotes as a name",
-                    _ if percent(text, start) => "a number has no `%`: write `0.5` for 50 %",
+                    "|" => &absolute,
+                    _ if is_keyword(found) => {
+                        "write a value before it, or, if it is a name, put it in quotes"
+                    }
+                    _ if let Some(help) = &percent => help,
                     _ => "write an operator between two numbers or names",
                 };
                 error(found.len(), message).help(help)
@@ -477,8 +492,11 @@ impl FormulaMistake<'_> {
                     "," => {
                         "a decimal point is written as `.`; a comma separates the operands of a function"
                     }
-                    ")" => "there is no `(` before it; remove it, or add one",
+                    ")" => "this `)` has no matching `(`: remove the `)`, or add a `(`",
                     "(" => "write `*` to multiply",
+                    _ if before.is_some_and(|word| word.parse::<f64>().is_ok()) => {
+                        "write `*` to multiply"
+                    }
                     _ if found.starts_with(|c: char| in_name(c)) => {
                         "write `*` to multiply; put a name of several words in quotes"
                     }
@@ -531,15 +549,19 @@ impl FormulaMistake<'_> {
             )
             .help("write the name of a variable between two quotes"),
             FormulaMistakeKind::Number(written) => {
-                let message = match written.parse::<f64>() {
-                    Ok(_) => format!("the number `{written}` is too large"),
-                    Err(_) => format!("`{written}` is not a number"),
+                let (message, help) = match written.parse::<f64>() {
+                    Ok(_) => ("the number `{}` is too large", "write a smaller number"),
+                    Err(_) => (
+                        "`{}` is not a number",
+                        "write digits with one decimal point, as in `0.5`",
+                    ),
                 };
-                error(written.len(), message).help("write digits with one decimal point: `0.5`")
+                error(written.len(), message.replace("{}", written)).help(help)
             }
             FormulaMistakeKind::TooDeep => {
-                let message =
-                    format!("brackets, signs and powers are nested deeper than {DEEPEST_NESTING}");
+                let message = format!(
+                    "brackets, signs and powers are nested more than {DEEPEST_NESTING} levels deep"
+                );
                 error(found.len(), message)
                     .help("split the formula into the formulas of several terms")
             }

@@ -152,7 +152,7 @@ fn mistakes_are_reported_with_their_position() {
     let reported: Vec<String> = texts.into_iter().map(mistake).collect();
     insta::assert_snapshot!(reported.join("\n"));
     let deep = "(".repeat(70) + "1";
-    assert!(mistake(&deep).contains("nested deeper than 64"));
+    assert!(mistake(&deep).contains("nested more than 64 levels deep"));
     let long = "1 + ".repeat(600) + "1";
     assert!(mistake(&long).contains("more than 1000 parts"));
     let wide = "1 + (".repeat(40) + "1" + &")".repeat(40);

@@ -35,11 +35,11 @@ pub(crate) struct OutputReference {
 pub(crate) struct Stage<'m> {
     /// The model of this stage. Its inputs are those of the whole model, followed by `reads`.
     pub(crate) model: Cow<'m, Model>,
-    /// The indices in the whole model of the outputs that the stage reads, in ascending order.
+    /// The outputs that the stage reads, as ascending indices into the whole model.
     pub(crate) reads: Vec<usize>,
-    /// The index in the whole model of each output of the stage.
+    /// The outputs of the stage, as indices into the whole model.
     pub(crate) outputs: Vec<usize>,
-    /// The index in the whole model of each rule of the stage.
+    /// The rules of the stage, as indices into the whole model.
     pub(crate) rules: Vec<usize>,
 }
 
@@ -297,42 +297,106 @@ pub(crate) fn cycle_errors(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
     let step = |by: usize, output: usize| {
         let mut reads = reads.get(by)?.iter();
         let read = reads.find(|read| read.output == output)?;
-        let rule = read.rule.map(|rule| {
-            let mut place = format!(" in rule {}", rule + 1);
-            let rule = model.rules.get(rule);
-            // If the rule does not conclude the output, the output depends on it through the activation method of the
-            // rule's block.
-            if rule.is_some_and(|rule| !concludes(rule, &model.outputs[by])) {
-                place += " of its block";
-            }
-            place
-        });
-        let rule = rule.unwrap_or_default();
-        let text = format!("`{}` reads `{}`{rule}", name(by)?, name(output)?);
-        Some((text, read.span.clone()))
+        let rule = read
+            .rule
+            .map_or(String::new(), |rule| format!(" in rule {}", rule + 1));
+        Some(CycleStep {
+            text: format!("`{}` reads `{}`{rule}", name(by)?, name(output)?),
+            name: name(by)?,
+            rule: read.rule,
+            // If the rule does not conclude the output, an activation method makes the output depend on the rule.
+            is_selected: read
+                .rule
+                .and_then(|rule| model.rules.get(rule))
+                .is_some_and(|rule| {
+                    model
+                        .outputs
+                        .get(by)
+                        .is_some_and(|output| !concludes(rule, output))
+                }),
+            span: read.span.clone(),
+        })
     };
     let cycles = order(&reads).err().unwrap_or_default().into_iter();
-    let errors = cycles.map(|cycle| {
+    let cycles = cycles.map(|cycle| {
         let next = cycle.iter().cycle().skip(1);
         let steps = cycle.iter().zip(next);
-        let steps: Vec<(String, Range<usize>)> = steps
-            .filter_map(|(by, output)| step(*by, *output))
-            .collect();
-        let path: Vec<&str> = steps.iter().map(|(text, _)| text.as_str()).collect();
-        let message = match path.as_slice() {
-            [itself] => format!("an output cannot read itself: {itself}"),
-            path => format!("outputs read one another in a circle: {}", path.join(", ")),
-        };
-        let first = steps.first().map_or(0..0, |(_, span)| span.clone());
-        let finding = Diagnostic::error("circular-outputs", first, message);
-        let others = steps.iter().skip(1);
-        others
-            .fold(finding, |finding, (text, span)| {
-                finding.related(span.clone(), text.as_str())
-            })
-            .help("let one of them read only inputs, or conclude an output with another name")
+        let steps = steps.filter_map(|(by, output)| step(*by, *output));
+        cycle_error(&steps.collect::<Vec<CycleStep<'_>>>())
     });
-    errors.collect()
+    cycles.collect()
+}
+
+/// A step of a cycle: an output that reads the next one.
+struct CycleStep<'m> {
+    text: String,
+    /// The output that reads the next one.
+    name: &'m str,
+    /// The index of the rule that reads it; `None` for a term.
+    rule: Option<usize>,
+    /// Whether the output depends on the rule only because of an activation method.
+    is_selected: bool,
+    span: Range<usize>,
+}
+
+fn cycle_error(steps: &[CycleStep<'_>]) -> Diagnostic {
+    let path: Vec<&str> = steps.iter().map(|step| step.text.as_str()).collect();
+    let (message, help) = match steps {
+        [
+            CycleStep {
+                name,
+                rule: Some(rule),
+                is_selected: true,
+                ..
+            },
+        ] => (
+            format!(
+                "rule {} reads `{name}`, which the rules of its block conclude; with an `activation`, the rules of a block are evaluated together",
+                rule + 1
+            ),
+            format!("remove `activation`, or move the rules that read `{name}` into a later block"),
+        ),
+        [
+            CycleStep {
+                name,
+                rule: Some(rule),
+                ..
+            },
+        ] => (
+            format!(
+                "an output cannot read itself: `{name}` in rule {}",
+                rule + 1
+            ),
+            format!(
+                "remove `{name}` from the condition, or use a different output in the conclusion"
+            ),
+        ),
+        [CycleStep { name, .. }] => (
+            format!("an output cannot read itself: `{name}`"),
+            format!("remove `{name}` from the term that reads it"),
+        ),
+        steps => {
+            let message = format!("outputs read one another in a circle: {}", path.join(", "));
+            let of_rules = steps.iter().filter(|step| step.rule.is_some()).count();
+            let help = match of_rules {
+                0 => "break the circle: remove one of these outputs from the term that reads it",
+                _ if of_rules == steps.len() => {
+                    "break the circle: remove one of these outputs from a condition, or let one of these rules conclude a new output"
+                }
+                _ => {
+                    "break the circle: remove one of these outputs from the condition or the term that reads it"
+                }
+            };
+            (message, help.into())
+        }
+    };
+    let first = steps.first().map_or(0..0, |step| step.span.clone());
+    let finding = Diagnostic::error("circular-outputs", first, message);
+    let others = steps.iter().skip(1);
+    let finding = others.fold(finding, |finding, step| {
+        finding.related(step.span.clone(), step.text.as_str())
+    });
+    finding.help(help)
 }
 
 /// Returns the stages of a model in the order of evaluation: the first one, and the later ones. A model without chains

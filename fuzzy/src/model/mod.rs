@@ -11,7 +11,6 @@ pub(crate) mod chain;
 pub(crate) mod document;
 pub(crate) mod footprint;
 mod partition;
-#[cfg(any(feature = "check", feature = "learn"))]
 mod plateau;
 mod provenance;
 mod steps;
@@ -175,7 +174,25 @@ pub enum Defuzzifier {
     Tsukamoto,
 }
 
+/// The words for defuzzifiers in YAML and in messages.
+pub(crate) const DEFUZZIFIERS: [(&str, Defuzzifier); Defuzzifier::ALL.len()] = [
+    ("centroid", Defuzzifier::Centroid),
+    ("bisector", Defuzzifier::Bisector),
+    ("smallest_of_maxima", Defuzzifier::SmallestOfMaxima),
+    ("mean_of_maxima", Defuzzifier::MeanOfMaxima),
+    ("largest_of_maxima", Defuzzifier::LargestOfMaxima),
+    ("weighted_average", Defuzzifier::WeightedAverage),
+    ("weighted_sum", Defuzzifier::WeightedSum),
+    ("tsukamoto", Defuzzifier::Tsukamoto),
+];
+
 impl Defuzzifier {
+    /// Returns the word in YAML.
+    pub(crate) fn word(self) -> &'static str {
+        let found = DEFUZZIFIERS.iter().find(|(_, one)| *one == self);
+        found.map_or("", |(word, _)| *word)
+    }
+
     /// All defuzzifiers.
     pub const ALL: [Defuzzifier; 8] = [
         Defuzzifier::Centroid,

@@ -10,13 +10,52 @@ use crate::{
     tree::percentage_advice,
 };
 
+mod comparison;
 mod conclusion;
 mod condition;
 mod words;
 
-use conclusion::{after_conclusion, weight_advice};
-use condition::{is_missing, is_phrase, two_words};
-use words::{at_start, connective, found_here, name_is_missing, sign};
+use conclusion::{after_conclusion, terms_of_conclusion, weight_advice};
+use condition::{is_missing, than, two_words};
+use words::{at_start, before_input, connective, found_here, joining, name_is_missing, sign};
+
+/// The name of an input or output, and its terms in the order of their positions.
+pub(crate) struct KnownVariable<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) terms: Vec<&'a str>,
+}
+
+/// The inputs and outputs that a rule can name, for suggestions; empty if they are unknown.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct KnownNames<'a> {
+    pub(crate) inputs: &'a [KnownVariable<'a>],
+    pub(crate) outputs: &'a [KnownVariable<'a>],
+}
+
+impl<'a> KnownNames<'a> {
+    /// Returns the input or output with this name.
+    fn variable(self, name: &str) -> Option<&'a KnownVariable<'a>> {
+        let mut variables = self.inputs.iter().chain(self.outputs);
+        variables.find(|variable| variable.name == name)
+    }
+
+    fn is_output(self, name: &str) -> bool {
+        self.outputs.iter().any(|output| output.name == name)
+    }
+
+    /// Returns the name of a variable that has a term; `kind` is `input` or `output`.
+    fn owner(self, kind: &str, term: &str) -> Option<&'a str> {
+        let variables = if kind == "output" {
+            self.outputs
+        } else {
+            self.inputs
+        };
+        let found = variables
+            .iter()
+            .find(|variable| variable.terms.contains(&term));
+        found.map(|variable| variable.name)
+    }
+}
 
 /// A syntax error, with the remaining text at the position where it was detected.
 pub(super) struct RuleMistake<'a> {
@@ -70,9 +109,17 @@ impl<'a> ParseError<&'a str> for RuleMistake<'a> {
 
 const CONNECTIVES: [&str; 3] = ["AND", "OR", "THEN"];
 
+/// Returns the position of `more` in a text that ends in `more or`.
+fn more_or(before: &str) -> Option<usize> {
+    let mut words = before.split_whitespace().rev();
+    let (or, more) = (words.next()?, words.next()?);
+    let is_phrase = or.eq_ignore_ascii_case("or") && more.eq_ignore_ascii_case("more");
+    is_phrase.then(|| before.rfind(more)).flatten()
+}
+
 impl RuleMistake<'_> {
     /// Returns the diagnostic of the syntax error.
-    pub(super) fn explain(self, text: &str, owner: Owner<'_>) -> Diagnostic {
+    pub(super) fn explain(self, text: &str, known: KnownNames<'_>) -> Diagnostic {
         let rest = self.rest.trim_start();
         let start = text.len() - rest.len();
         let found = found_here(rest);
@@ -80,6 +127,7 @@ impl RuleMistake<'_> {
         let before = text.get(..start).unwrap_or("");
         let shown = match found {
             "" => String::from("the end of the rule"),
+            "`" => String::from("a backtick"),
             found => format!("`{found}`"),
         };
         let syntax = |message: String| Diagnostic::error("rule-syntax", span.clone(), message);
@@ -89,13 +137,17 @@ impl RuleMistake<'_> {
         match self.kind {
             RuleMistakeKind::Keyword(words, after) => {
                 let diagnostic = match words {
-                    [] => syntax(format!("expected the end of the rule {after}, found {shown}")),
+                    [] => syntax(format!(
+                        "expected the end of the rule {after}, found {shown}"
+                    )),
                     _ => syntax(format!("expected {} {after}, found {shown}", either(words))),
                 };
                 let help = match nearest(found, words.iter().copied()) {
                     Some(word) => Some(format!("did you mean `{word}`?")),
                     None if words.contains(&"IF") => Some(at_start(rest)),
-                    None if words.contains(&")") => sign(rest).or_else(|| connective(before, rest)),
+                    None if words.contains(&")") => {
+                        sign(rest).or_else(|| connective(before, rest, known))
+                    }
                     None => sign(rest).or_else(|| after_conclusion(before, rest, words.is_empty())),
                 };
                 with_help(diagnostic, help)
@@ -103,7 +155,16 @@ impl RuleMistake<'_> {
             RuleMistakeKind::Connective => {
                 let help = match nearest(found, CONNECTIVES) {
                     _ if found.eq_ignore_ascii_case("WITH") => {
-                        Some("write the weight at the end of the rule: `THEN output IS term WITH 0.5`".into())
+                        let number = rest.split_whitespace().nth(1).unwrap_or("0.5");
+                        Some(format!("move `{found} {number}` to the end of the rule"))
+                    }
+                    // For example `temperature IS more than mild`.
+                    _ if found.eq_ignore_ascii_case("THAN") && let Some(help) = than(before, rest, known) => Some(help),
+                    _ if let Some(word) = joining(found) => {
+                        Some(format!("write `{word}` in place of `{found}`"))
+                    }
+                    _ if found.eq_ignore_ascii_case("IF") => {
+                        Some("a rule has one `IF`: write `AND` in place of the second `IF`".into())
                     }
                     _ if found.eq_ignore_ascii_case("XOR") => Some(
                         "there is no `XOR`: write `(a AND NOT b) OR (NOT a AND b)` with the conditions a and b"
@@ -118,7 +179,7 @@ impl RuleMistake<'_> {
                         None => "write `THEN` in place of the colon".into(),
                     }),
                     Some(word) => Some(format!("did you mean `{word}`?")),
-                    None => sign(rest).or_else(|| connective(before, rest)),
+                    None => sign(rest).or_else(|| connective(before, rest, known)),
                 };
                 with_help(expected(&either(&CONNECTIVES), "the condition"), help)
             }
@@ -126,33 +187,46 @@ impl RuleMistake<'_> {
                 let from = from.trim_start();
                 let name = found_here(from);
                 let start = text.len() - from.len();
-                let help = is_missing(kind, name, rest, text.get(..start).unwrap_or(""), owner);
-                with_help(expected("`IS`", &format!("the {kind}")), help)
+                let before = text.get(..start).unwrap_or("");
+                let help = is_missing(kind, name, rest, before, known);
+                let diagnostic = match more_or(before).filter(|_| name.eq_ignore_ascii_case("less"))
+                {
+                    Some(more) => {
+                        let message = "there is no hedge `more or less`";
+                        Diagnostic::error("rule-syntax", more..start + name.len(), message)
+                    }
+                    None => expected("`IS`", &format!("the {kind}")),
+                };
+                with_help(diagnostic, help)
             }
             RuleMistakeKind::Name(what) => {
-                let help = name_is_missing(what, rest, before).or_else(|| sign(rest));
+                let help = name_is_missing(what, rest, before, known).or_else(|| sign(rest));
                 with_help(syntax(format!("expected {what}, found {shown}")), help)
             }
             RuleMistakeKind::HedgeBeforeInput => {
-                let diagnostic = syntax(format!("the hedge {shown} is before the input"));
-                diagnostic.help(format!(
-                    "write a hedge between `IS` and the term: `input IS {found} term`"
-                ))
+                syntax(format!("the hedge {shown} is before the input")).help(before_input(rest))
             }
-            RuleMistakeKind::HedgeInConsequent => syntax(format!("`{found}` is not allowed after `THEN`"))
-                .help("`NOT` and `any` belong in the condition; here name one term of the output, such as `IS low` or `IS very low`"),
+            RuleMistakeKind::HedgeInConsequent => {
+                syntax(format!("`{found}` is not allowed after `THEN`"))
+                    .help(terms_of_conclusion(before, known))
+            }
             RuleMistakeKind::TwoWords(second) => {
                 let whole = format!("{found} {second}");
-                if owner("input", found).is_some() && owner("input", &whole).is_none() && !is_phrase(found, second) {
+                let is_term =
+                    known.owner("input", found).is_some() && known.owner("input", &whole).is_none();
+                if is_term || joining(second).is_some() {
                     // The first word is a term, so the second one is wrong.
                     let rest = rest.get(found.len()..).unwrap_or("");
-                    let mistake = RuleMistake { rest, kind: RuleMistakeKind::Connective };
-                    let diagnostic = mistake.explain(text, owner);
+                    let mistake = RuleMistake {
+                        rest,
+                        kind: RuleMistakeKind::Connective,
+                    };
+                    let diagnostic = mistake.explain(text, known);
                     let help = format!("`{found}` is a term: write `AND`, `OR` or `THEN` after it");
                     let help = diagnostic.help.clone().unwrap_or(help);
                     return diagnostic.help(help);
                 }
-                two_words(span, found, second)
+                two_words(span, (found, second), (before, rest), known)
             }
             RuleMistakeKind::OpenQuote => syntax(String::from("the quoted name is never closed"))
                 .help("add the closing quote"),
@@ -166,8 +240,10 @@ impl RuleMistake<'_> {
                 Diagnostic::error("rule-syntax", start..start + 2, "the name is empty")
                     .help("write the name of a variable or a term between the quotes")
             }
-            RuleMistakeKind::Number => syntax(format!("expected a weight after `WITH`, found {shown}"))
-                .help(weight_advice(rest)),
+            RuleMistakeKind::Number => {
+                syntax(format!("expected a weight after `WITH`, found {shown}"))
+                    .help(weight_advice(rest))
+            }
             RuleMistakeKind::Weight(weight) => {
                 let message = format!("the weight `{weight}` is outside [0, 1]");
                 let help = percentage_advice(weight).unwrap_or_else(|| {
@@ -178,16 +254,12 @@ impl RuleMistake<'_> {
             RuleMistakeKind::TooDeep => Diagnostic::error(
                 "rule-too-deep",
                 span,
-                format!("brackets and NOTs are nested deeper than {DEEPEST_NESTING}"),
+                format!("brackets and NOTs are nested more than {DEEPEST_NESTING} levels deep"),
             )
-            .help("split the rule into several rules with the same conclusion"),
+            .help("remove brackets that have no effect, or split the rule into several rules"),
         }
     }
 }
-
-/// A function that returns the name of an input or output that has a given term. Its first argument is `input` or
-/// `output`, the second is the name of the term.
-pub(crate) type Owner<'a> = &'a dyn Fn(&str, &str) -> Option<String>;
 
 fn with_help(diagnostic: Diagnostic, help: Option<String>) -> Diagnostic {
     Diagnostic { help, ..diagnostic }

@@ -28,7 +28,7 @@ use nom::{
 
 use super::{
     Condition, Consequent, Hedge, Name, Proposition, Rule, is_plain_name,
-    mistake::{Owner, RuleMistake, RuleMistakeKind},
+    mistake::{KnownNames, RuleMistake, RuleMistakeKind},
 };
 use crate::diagnostic::{Diagnostic, nearest};
 
@@ -53,20 +53,20 @@ pub const DEEPEST_NESTING: usize = 64;
 /// # Ok::<(), Box<fuzzy::diagnostic::Diagnostic>>(())
 /// ```
 pub fn parse(text: &str) -> Result<Rule, Box<Diagnostic>> {
-    parse_with_weight(text, &|_, _| None).map(|(rule, _)| rule)
+    parse_with_weight(text, KnownNames::default()).map(|(rule, _)| rule)
 }
 
-/// Parses a rule. Also returns the position of its weight: that of the number after WITH, or an empty range after
-/// the conclusion if there is no weight. `owner` returns the input or output that has a term, for suggestions.
+/// Parses a rule, and also returns the position of its weight: the number after WITH, or the empty range after the
+/// conclusion. Suggestions contain the names in `known`.
 pub(crate) fn parse_with_weight(
     text: &str,
-    owner: Owner<'_>,
+    known: KnownNames<'_>,
 ) -> Result<(Rule, Range<usize>), Box<Diagnostic>> {
     let source = Source { text };
     match source.rule(text) {
         Ok((_, found)) => Ok(found),
         Err(Err::Error(mistake) | Err::Failure(mistake)) => {
-            Err(Box::new(mistake.explain(text, owner)))
+            Err(Box::new(mistake.explain(text, known)))
         }
         // Only nom's streaming parsers report incomplete input, and they are not used here.
         Err(Err::Incomplete(_)) => Err(Box::new(Diagnostic::error(

@@ -95,19 +95,19 @@ fn every_mistake_has_a_position_and_help() {
             "",
             "",
             "expected `IF` at the start of a rule, found the end of the rule",
-            "a rule reads",
+            "write the rule as `IF input",
         ),
         (
             "margin IS low",
             "margin",
             "expected `IF` at the start of a rule, found `margin`",
-            "a rule reads",
+            "write `IF` before `margin`",
         ),
         (
             "IFmargin IS low THEN r IS h",
             "IFmargin",
             "expected `IF` at the start of a rule, found `IFmargin`",
-            "a rule reads",
+            "write a space after `IF`",
         ),
         (
             "IF margin low THEN r IS h",
@@ -137,7 +137,7 @@ fn every_mistake_has_a_position_and_help() {
             "IF margin IS low ANd AND s IS low THEN r IS h",
             "AND",
             "expected the name of an input, `NOT` or `(`, found `AND`",
-            "remove the word before it",
+            "add a condition after `ANd`, or remove",
         ),
         (
             "IF margin IS low THNE r IS h",
@@ -179,7 +179,7 @@ fn every_mistake_has_a_position_and_help() {
             "IF margin IS low) THEN r IS h",
             ")",
             "expected `AND`, `OR` or `THEN` after the condition, found `)`",
-            "there is no `(` before it",
+            "has no matching `(`",
         ),
         (
             "IF margin IS 'low THEN r IS h",
@@ -197,7 +197,7 @@ fn every_mistake_has_a_position_and_help() {
             "IF margin IS low THEN r IS any h",
             "any",
             "`any` is not allowed after `THEN`",
-            "belong in the condition",
+            "write one term of the output",
         ),
         (
             "IF margin IS low THEN r IS",
@@ -221,7 +221,7 @@ fn every_mistake_has_a_position_and_help() {
             "IF margin IS low THEN r IS h OR r IS l",
             "OR",
             "expected `AND` or `WITH` after the conclusion, found `OR`",
-            "for `OR` write two rules",
+            "instead of `OR`, write two rules",
         ),
         (
             "IF margin IS low THEN r IS h ELSE r IS l",
@@ -263,13 +263,13 @@ fn every_mistake_has_a_position_and_help() {
             "IF margin IS low THEN r IS h WITH 0.5 x",
             "x",
             "expected the end of the rule after the conclusion, found `x`",
-            "a weight is the end of its rule",
+            "remove everything after the weight",
         ),
         (
             "IF margin IS low ; THEN r IS h",
             ";",
             "expected `AND`, `OR` or `THEN` after the condition, found `;`",
-            "remove it",
+            "remove the semicolon",
         ),
     ] {
         let found = parse(text).unwrap_err();

@@ -8,6 +8,8 @@ use super::{MembershipFunction, Role, ShapeParts};
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MembershipError {
     message: String,
+    /// The suggestion for how to correct the parameters.
+    pub(crate) help: &'static str,
     /// The index of the invalid parameter, point or coefficient.
     pub(crate) parameter: Option<usize>,
 }
@@ -16,6 +18,7 @@ impl MembershipError {
     pub(super) fn count(expected: usize, got: usize) -> Self {
         MembershipError {
             message: format!("the shape has {expected} parameters, not {got}"),
+            help: "write all parameters of the shape",
             parameter: None,
         }
     }
@@ -29,9 +32,10 @@ impl core::fmt::Display for MembershipError {
 
 impl core::error::Error for MembershipError {}
 
-fn wrong(parameter: usize, message: String) -> Result<(), MembershipError> {
+fn wrong(parameter: usize, message: String, help: &'static str) -> Result<(), MembershipError> {
     Err(MembershipError {
         message,
+        help,
         parameter: Some(parameter),
     })
 }
@@ -60,14 +64,14 @@ impl MembershipFunction {
                         (Role::Ascending, Some((left, low))) if low > value => {
                             let message =
                                 format!("`{left}` ({low}) is greater than `{name}` ({value})");
-                            return wrong(i, message);
+                            let help = "write the positions from left to right: each at or after the one before it";
+                            return wrong(i, message, help);
                         }
                         (Role::Ascending, _) => before = Some((name, value)),
                         (Role::Positive, _) if value <= 0.0 => {
-                            return wrong(
-                                i,
-                                format!("`{name}` is {value}, but must be greater than 0"),
-                            );
+                            let message =
+                                format!("`{name}` is {value}, but must be greater than 0");
+                            return wrong(i, message, "write a number greater than 0");
                         }
                         _ => {}
                     }
@@ -82,7 +86,9 @@ impl MembershipFunction {
                 finite(coefficients.len(), "constant", constant)?;
             }
         }
-        self.misfit().map_or(Ok(()), |message| wrong(0, message))
+        let help = "write two different numbers";
+        self.misfit()
+            .map_or(Ok(()), |message| wrong(0, message, help))
     }
 
     /// Returns the message for parameters that are valid individually but not in combination.
@@ -107,9 +113,14 @@ fn finite(i: usize, name: &str, value: f64) -> Result<(), MembershipError> {
     if (2.0 * value).is_finite() {
         Ok(())
     } else if value.is_finite() {
-        wrong(i, format!("`{name}` is too large"))
+        wrong(
+            i,
+            format!("`{name}` is too large"),
+            "write a smaller number",
+        )
     } else {
-        wrong(i, format!("`{name}` is {value}, not a finite number"))
+        let message = format!("`{name}` is {value}, not a finite number");
+        wrong(i, message, "write a finite number")
     }
 }
 
@@ -117,6 +128,7 @@ fn piecewise(points: &[(f64, f64)]) -> Result<(), MembershipError> {
     if points.is_empty() {
         return Err(MembershipError {
             message: "there are no points".into(),
+            help: "write each point as a position and a degree: `piecewise: [[x, degree], [x, degree]]`",
             parameter: None,
         });
     }
@@ -124,10 +136,12 @@ fn piecewise(points: &[(f64, f64)]) -> Result<(), MembershipError> {
     for (i, &(x, degree)) in points.iter().enumerate() {
         finite(i, "x", x)?;
         if !(0.0..=1.0).contains(&degree) {
-            return wrong(i, format!("the degree {degree} at {x} is outside [0, 1]"));
+            let message = format!("the degree {degree} at {x} is outside [0, 1]");
+            return wrong(i, message, "write a degree from 0 to 1");
         }
         if before > x {
-            return wrong(i, format!("the point at {x} follows the point at {before}"));
+            let message = format!("the point at {x} comes after the point at {before}");
+            return wrong(i, message, "write the points from left to right");
         }
         before = x;
     }

@@ -231,8 +231,8 @@ pub(crate) fn search(
     for step in 0..MAX_STEPS {
         let (area, moment) = sums(x);
         let next = larger(low, smaller(high, x + moment / area));
-        // The start may be on the wrong side of the end, outside the interval. After the first step, all steps approach
-        // the end from inside the interval, up to rounding.
+        // The starting point may be outside the interval, beyond the end that is computed. After the first step, all
+        // steps approach that end from inside the interval, up to rounding.
         let approaches = match end {
             IntervalEnd::Left => next < x,
             IntervalEnd::Right => next > x,

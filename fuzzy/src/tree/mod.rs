@@ -163,6 +163,24 @@ impl Node {
         }
     }
 
+    /// Formats the value on one line: `{triangle: [0, 2, 4]}`.
+    pub(crate) fn to_line(&self) -> String {
+        match &self.value {
+            Value::Scalar(scalar) => scalar.text.clone(),
+            Value::List(items) => {
+                let items: Vec<String> = items.iter().map(Node::to_line).collect();
+                format!("[{}]", items.join(", "))
+            }
+            Value::Mapping(pairs) => {
+                let pairs = pairs.iter();
+                let pairs: Vec<String> = pairs
+                    .map(|(key, value)| format!("{}: {}", key.to_line(), value.to_line()))
+                    .collect();
+                format!("{{{}}}", pairs.join(", "))
+            }
+        }
+    }
+
     /// Returns the value of a key of a mapping.
     #[must_use]
     pub fn child(&self, key: &str) -> Option<&Node> {

@@ -48,7 +48,7 @@ pub fn number_advice(text: &str) -> Option<String> {
         let percent = text.trim_end_matches('%').trim();
         return Some(match share {
             0.0 => "write only the number: `0`".into(),
-            _ => format!("write `{percent}`, or `{share}` if the value is a share"),
+            _ => format!("write `{percent}`, or `{share}` if the value is a fraction"),
         });
     }
     if let Some(positive) = text
@@ -165,9 +165,9 @@ mod tests {
             ("\u{2212}12", "this dash is not a minus sign: write `-12`"),
             (
                 "15.48 %",
-                "write `15.48`, or `0.1548` if the value is a share",
+                "write `15.48`, or `0.1548` if the value is a fraction",
             ),
-            ("36 %", "write `36`, or `0.36` if the value is a share"),
+            ("36 %", "write `36`, or `0.36` if the value is a fraction"),
             ("0%", "write only the number: `0`"),
             ("22V", "write the number without its unit: `22`"),
             (

@@ -12,12 +12,18 @@ use super::{
     number::{number_advice, share_of_percentage},
 };
 use crate::{
-    diagnostic::{Diagnostic, duplicate, either, likely_candidates, suggest},
+    diagnostic::{Diagnostic, duplicate, either, likely_candidates, listed, suggest},
     foreign,
 };
 
 /// The known keys that the author probably meant by unknown keys. They are not reported as missing in addition.
 const COMMENT: &str = "a comment begins with `#`, not with `//`";
+
+/// The suggestion for a file without a rule set around its rules.
+const ONLY_RULES: &str = "write the rules in a list below a line `rules:`, and `fuzzy: 1`, `name`, `inputs` and `outputs` above it";
+
+/// The suggestion for a value that does not resemble a number.
+const NUMBER: &str = "write a number";
 
 /// The fields of a mapping whose keys are known.
 pub struct Fields<'a> {
@@ -95,6 +101,13 @@ impl<'a> Fields<'a> {
         &self.entries
     }
 
+    /// Returns the value of a key, or that of the unknown key that probably refers to it.
+    pub(crate) fn get_or_misspelt(&self, key: &str) -> Option<&'a Node> {
+        let is_meant = |entry: &&Entry<'_>| !likely_candidates(entry.key, &[key]).is_empty();
+        let misspelt = || self.unknown().find(is_meant).map(|entry| entry.value);
+        self.get(key).or_else(misspelt)
+    }
+
     /// Returns the unknown keys with their values.
     pub fn unknown(&self) -> impl Iterator<Item = &Entry<'a>> {
         let entries = self.entries.iter();
@@ -127,7 +140,7 @@ impl<'a> Fields<'a> {
             let is_open = finding
                 .help
                 .as_deref()
-                .is_some_and(|help| help.starts_with("there "));
+                .is_some_and(|help| help.starts_with("the key"));
             finding.code == "unknown-key" && is_open && self.unlike.contains(&finding.span)
         };
         if self.unlike.len() == 1
@@ -182,8 +195,9 @@ impl Node {
         let (mut unknown, mut unlike) = (Vec::new(), Vec::new());
         for entry in &entries {
             if !known.contains(&entry.key) {
-                let message = format!("{what} has no key `{}`", entry.key);
+                let message = format!("unknown key `{}` in {what}", entry.key);
                 let mut finding = Diagnostic::error("unknown-key", entry.key_span.clone(), message);
+                let is_there = |key: &str| entries.iter().any(|entry| entry.key == key);
                 let meant = likely_candidates(entry.key, known);
                 finding.help = match foreign::belongs_elsewhere(entry.key) {
                     Some(help) if meant.is_empty() => Some(help.into()),
@@ -201,12 +215,23 @@ impl Node {
                             ))
                         }),
                     _ if let Some(help) = entry.in_seconds(known) => Some(help),
-                    _ => {
-                        if meant.is_empty() {
-                            unlike.push(entry.key_span.clone());
-                        }
-                        suggest(entry.key, known.iter().copied())
+                    _ if let [key] = meant.as_slice()
+                        && is_there(key) =>
+                    {
+                        Some(format!(
+                            "did you mean `{key}`? That key is there too: keep one of them"
+                        ))
                     }
+                    _ if meant.is_empty() => {
+                        unlike.push(entry.key_span.clone());
+                        let is = if known.len() == 1 {
+                            "key is"
+                        } else {
+                            "keys are"
+                        };
+                        Some(format!("the {is} {}", listed(known)))
+                    }
+                    _ => suggest(entry.key, known.iter().copied()),
                 };
                 unknown.push(entry.key);
                 misspelt.extend(meant.into_iter().map(String::from));
@@ -281,16 +306,14 @@ impl Node {
             Some(_) => {
                 let shown = self.shown();
                 let message = format!("{what} must be a finite number, not {shown}");
-                findings.push(
-                    Diagnostic::error("not-finite", self.span.clone(), message)
-                        .help("write a number such as `0.5`"),
-                );
+                let finding = Diagnostic::error("not-finite", self.span.clone(), message);
+                findings.push(finding.help(NUMBER));
                 None
             }
             None => {
                 let mut finding = self.unexpected(&format!("a number for {what}"));
                 let help = self.number_advice();
-                finding.help = Some(help.unwrap_or_else(|| "write a number such as `0.5`".into()));
+                finding.help = Some(help.unwrap_or_else(|| NUMBER.into()));
                 findings.push(finding);
                 None
             }
@@ -303,7 +326,7 @@ impl Node {
         let found = self.finite(what, findings);
         let percentage = self.as_text().and_then(share_of_percentage);
         if let (Some(finding), Some(share)) = (findings.get_mut(before), percentage) {
-            finding.help = Some(format!("write it as a share: `{share}`"));
+            finding.help = Some(format!("write it as a fraction: `{share}`"));
         }
         found
     }
@@ -317,8 +340,9 @@ impl Node {
         match found {
             Some(number) if number >= least => Some(number),
             _ => {
+                let is_negative = self.as_text().is_some_and(|text| text.starts_with('-'));
                 let bounds = match least {
-                    0 => String::new(),
+                    0 if !is_negative => String::new(),
                     least => format!(", {least} or more,"),
                 };
                 let finding = self.unexpected(&format!("a whole number{bounds} for {what}"));
@@ -352,8 +376,8 @@ impl Node {
             let finding = self.unexpected(&format!("`true` or `false` for {what}"));
             let is_quoted = matches!(&self.value, Value::Scalar(scalar) if scalar.quoted);
             findings.push(finding.help(match is_quoted {
-                true => "write one of the two, without quotes",
-                false => "write one of the two",
+                true => "write `true` or `false`, without quotes",
+                false => "write `true` or `false`",
             }));
         }
         found
@@ -370,7 +394,7 @@ impl Node {
         let word = self.words(what, &format!("write {}", either(&names)), findings)?;
         let found = choices.iter().find(|(name, _)| *name == word.text);
         if found.is_none() {
-            let message = format!("{what} cannot be `{}`", word.text);
+            let message = format!("unknown word `{}` for {what}", word.text);
             let mut finding = Diagnostic::error("unknown-word", self.span.clone(), message);
             finding.help = suggest(&word.text, names);
             findings.push(finding);
@@ -385,17 +409,37 @@ impl Node {
         Diagnostic::error("wrong-type", self.span.clone(), message)
     }
 
-    /// Returns a finding for a document that is not a mapping. The text is not quoted, because the document may be
-    /// any file, for example one with secrets.
+    /// Returns a finding for a document that is not a mapping; `what` is "rule set" or "profile", and `first` its first
+    /// line. The text is not quoted, because the document may be any file, for example one with secrets.
     #[must_use]
-    pub fn unexpected_document(&self, what: &str) -> Diagnostic {
-        let message = match &self.value {
-            Value::Scalar(scalar) if !scalar.is_null() => {
-                format!("this is plain text, not a {what}")
-            }
-            _ => format!("expected a mapping for the {what}, found {}", self.shown()),
+    pub fn unexpected_document(&self, what: &str, first: &str) -> Diagnostic {
+        let begin = format!("a {what} begins with `{first}`");
+        let is_rule = |node: &Node| {
+            let start = node.as_text().and_then(|text| text.get(..3));
+            start.is_some_and(|start| start.eq_ignore_ascii_case("if "))
         };
-        Diagnostic::error("wrong-type", self.span.clone(), message)
+        let (message, help) = match &self.value {
+            Value::List(items) if !items.is_empty() && items.iter().all(is_rule) => {
+                ("the file contains only rules".into(), ONLY_RULES.into())
+            }
+            Value::Scalar(_) if is_rule(self) => {
+                ("the file contains only a rule".into(), ONLY_RULES.into())
+            }
+            Value::List(items) if items.iter().any(|item| item.children() > 0) => {
+                let help = match items.as_slice() {
+                    [_] => "remove the `-`, and begin all keys of the file in the first column",
+                    _ => {
+                        "remove the `-` at the start of the lines: a file contains keys, such as `name: ...`"
+                    }
+                };
+                (format!("the {what} is written as a list"), help.into())
+            }
+            Value::Scalar(scalar) if !scalar.is_null() => {
+                (format!("this is plain text, not a {what}"), begin)
+            }
+            _ => (format!("expected a {what}, found {}", self.shown()), begin),
+        };
+        Diagnostic::error("wrong-type", self.span.clone(), message).help(help)
     }
 
     /// Returns a short description of the value, to quote in messages.
@@ -430,8 +474,12 @@ impl Node {
             let numbers = scalar.text.split([' ', ';', '|']).map(str::trim);
             let numbers: Vec<&str> = numbers.filter(|number| !number.is_empty()).collect();
             let is_list = numbers.len() > 1 && numbers.iter().all(|n| n.parse::<f64>().is_ok());
-            return is_list
-                .then(|| format!("separate the numbers by commas: `[{}]`", numbers.join(", ")));
+            return is_list.then(|| {
+                format!(
+                    "separate the numbers with commas: `[{}]`",
+                    numbers.join(", ")
+                )
+            });
         }
         let mut adjoining = items.windows(2).filter_map(|pair| match pair {
             [whole, part] if part.span.start == whole.span.end + 1 => {

@@ -7,6 +7,7 @@ use super::{Validator, or};
 use crate::{
     diagnostic::duplicate,
     model::{Activation, Implication, MIN_STRENGTH, Model, concludes, document::Spans},
+    tree::percentage_advice,
 };
 
 impl Validator<'_> {
@@ -27,9 +28,9 @@ impl Validator<'_> {
                     percent / 100.0
                 ),
                 small if small < MIN_STRENGTH => format!(
-                    "strengths below {MIN_STRENGTH:e} are rounding errors; fuzzylite uses 1e-6"
+                    "remove `least_strength`: its default {MIN_STRENGTH:e} excludes only rounding errors"
                 ),
-                _ => "a firing strength is from 0 to 1".into(),
+                _ => "write a number from 0 to 1".into(),
             };
             self.error("value-outside-range", &spans.least_strength, message, &help);
         }
@@ -96,8 +97,9 @@ impl Validator<'_> {
         }
         if !(0.0..=1.0).contains(&strength) {
             let message =
-                format!("the activation of {what} compares with {strength}, outside [0, 1]");
-            let help = "a firing strength is a number from 0 to 1";
+                format!("the threshold {strength} in the activation of {what} is outside [0, 1]");
+            let help = percentage_advice(strength);
+            let help = help.as_deref().unwrap_or("write a number from 0 to 1");
             self.error("value-outside-range", here, message, help);
         }
     }

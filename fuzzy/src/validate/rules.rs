@@ -1,13 +1,13 @@
 //! Validation of rules: names, weights, provenance.
 
-use alloc::{borrow::ToOwned, format, string::String, vec::Vec};
+use alloc::{borrow::ToOwned, collections::BTreeMap, format, string::String, vec::Vec};
 use core::ops::Range;
 
 use super::{Validator, or};
 use crate::{
-    diagnostic::{Diagnostic, nearest, suggest},
+    diagnostic::{Diagnostic, listed, nearest, suggest},
     model::{MembershipFunction, Rule, Term, Variable, document::RuleSpans},
-    rule::{Condition, DEEPEST_NESTING, Hedge, Name, Proposition, is_plain_name},
+    rule::{self, Condition, Consequent, DEEPEST_NESTING, Hedge, Name, Proposition, is_plain_name},
 };
 
 impl<'m> Validator<'m> {
@@ -18,6 +18,10 @@ impl<'m> Validator<'m> {
             against,
             ..
         } = rule;
+        if let Some(finding) = self.exchanged(rule) {
+            self.findings.push(finding);
+            return;
+        }
         self.condition(&rule.condition, 0, &spans.whole);
         if rule.consequents.is_empty() {
             let message = String::from("the rule has no conclusion");
@@ -59,6 +63,37 @@ impl<'m> Validator<'m> {
         }
     }
 
+    /// Returns a finding for a rule whose condition reads an output and whose conclusion sets an input.
+    fn exchanged(&self, rule: &rule::Rule) -> Option<Diagnostic> {
+        let (Condition::Is(read), [set]) = (&rule.condition, rule.consequents.as_slice()) else {
+            return None;
+        };
+        let has = |names: &BTreeMap<&str, &Variable>, name: &Name| names.contains_key(&*name.text);
+        let are_exchanged = has(&self.outputs, &read.variable)
+            && !has(&self.inputs, &read.variable)
+            && has(&self.inputs, &set.output);
+        let term = read.term.clone().filter(|_| are_exchanged)?;
+        let meant = rule::Rule {
+            condition: Condition::Is(Proposition {
+                variable: set.output.clone(),
+                hedges: set.hedges.clone(),
+                term: Some(set.term.clone()),
+            }),
+            consequents: Vec::from([Consequent {
+                output: read.variable.clone(),
+                hedges: read.hedges.clone(),
+                term,
+            }]),
+            weight: rule.weight,
+        };
+        let (output, input) = (&read.variable.text, &set.output.text);
+        let message = format!(
+            "the condition reads the output `{output}`, and the conclusion sets the input `{input}`"
+        );
+        let finding = Diagnostic::error("input-in-conclusion", read.variable.span.clone(), message);
+        Some(finding.help(format!("exchange them: `{meant}`")))
+    }
+
     /// Validates a condition. `depth` is the number of enclosing NOTs and brackets in the text of the rule.
     pub(super) fn condition(
         &mut self,
@@ -67,7 +102,8 @@ impl<'m> Validator<'m> {
         rule: &Range<usize>,
     ) {
         if depth > DEEPEST_NESTING {
-            let message = format!("brackets and NOTs are nested deeper than {DEEPEST_NESTING}");
+            let message =
+                format!("brackets and NOTs are nested more than {DEEPEST_NESTING} levels deep");
             let help = "split the rule into several rules with the same conclusion";
             self.error("rule-too-deep", rule, message, help);
             return;
@@ -118,21 +154,20 @@ impl<'m> Validator<'m> {
         match &proposition.term {
             Some(_) if kind == "output" && self.is_weighted(variable) => {
                 let message = format!(
-                    "`{}` is a Takagi-Sugeno output, whose terms are numbers; a condition reads fuzzy sets",
+                    "`{}` is a Takagi-Sugeno output, whose terms are numbers, but a condition needs fuzzy sets",
                     name.text
                 );
                 let sets = as_partition(variable).map_or(
                     "give it another defuzzifier and fuzzy sets as terms".to_owned(),
                     |sets| format!("write `{sets}` in place of `terms` and `defuzzifier`"),
                 );
-                let help = format!("{sets}, or let a linear function read it");
                 let mut reported = self.findings.iter_mut();
                 match reported.find(|finding| finding.message == message) {
                     Some(first) if !name.span.is_empty() => {
                         *first = first.clone().related(name.span.clone(), "read here too");
                     }
                     Some(_) => {}
-                    None => self.error("output-in-condition", &name.span, message, &help),
+                    None => self.error("output-in-condition", &name.span, message, &sets),
                 }
             }
             Some(term) => self.known_term(kind, variable, (&proposition.hedges, term)),
@@ -140,7 +175,7 @@ impl<'m> Validator<'m> {
             None if proposition.hedges.last() == Some(&Hedge::Any) => {}
             None => {
                 let message = format!("`{}` has no term", name.text);
-                let help = "add a term, or the hedge `any`";
+                let help = "write a term, or `any`, after `IS`";
                 self.error("missing-term", &name.span, message, help);
             }
         }
@@ -166,7 +201,8 @@ impl<'m> Validator<'m> {
         if found.is_none() && !self.outputs.is_empty() {
             let finding = if self.inputs.contains_key(name.text.as_str()) {
                 let message = format!("`{}` is an input; a conclusion sets outputs", name.text);
-                let help = "write the name of an output after `THEN`";
+                let outputs: Vec<&str> = self.outputs.keys().copied().collect();
+                let help = format!("write an output in its place: {}", listed(&outputs));
                 Diagnostic::error("input-in-conclusion", name.span.clone(), message).help(help)
             } else {
                 let known = self.outputs.keys().copied();
@@ -190,6 +226,23 @@ impl<'m> Validator<'m> {
         if is_reported || variable.terms.iter().any(|t| t.name == term.text) {
             return;
         }
+        if variable.terms.is_empty() {
+            let spans = self.model.inputs.iter().zip(&self.spans.inputs);
+            let mut spans = spans.filter(|(input, _)| input.name == variable.name);
+            let here = spans
+                .next()
+                .map_or(term.span.clone(), |(_, spans)| spans.name.clone());
+            let message = format!("{kind} `{}` has no terms", variable.name);
+            let finding = Diagnostic::error("missing-key", here, message);
+            let help = "write `partition: [low, medium, high]`, or `terms` with a membership function for each term";
+            self.findings.push(
+                finding
+                    .related(term.span.clone(), "a term is named here")
+                    .help(help),
+            );
+            self.unread.push(&variable.name);
+            return;
+        }
         let message = format!("{kind} `{}` has no term `{}`", variable.name, term.text);
         let mut finding = Diagnostic::error("unknown-term", term.span.clone(), message);
         let known = variable.terms.iter().map(|t| t.name.as_str());
@@ -208,7 +261,7 @@ impl<'m> Validator<'m> {
                 .map(|(name, term)| format!("{name}: {}", term.name))
                 .collect();
             finding.message = format!(
-                "the terms of {kind} `{}` have numbers as names, and there is no term `{}`",
+                "the terms of {kind} `{}` have numbers as names, so there is no term `{}`",
                 variable.name, term.text
             );
             finding.help = Some(format!(
@@ -278,7 +331,7 @@ impl Validator<'_> {
                 format!("write peaks in braces: `{{{}}}`", peaks.join(", "))
             }
             None => format!(
-                "if these are several terms, write a comma between them: `{}`; if it is one term, name it in quotes: `IS \"{joined}\"`",
+                "write a comma between the terms: `{}`",
                 joined.split_whitespace().collect::<Vec<&str>>().join(", ")
             ),
         };

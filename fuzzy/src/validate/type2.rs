@@ -42,7 +42,7 @@ impl Validator<'_> {
                 lower = rounded(lower),
                 upper = rounded(upper)
             );
-            let help = "the degree lies between both: make the lower one narrower, or give it a smaller `height`";
+            let help = "make the lower membership function narrower, or give it a smaller `height`: it must not exceed the upper one anywhere";
             self.error("lower-above-upper", &here, message, help);
         }
     }
@@ -137,14 +137,15 @@ impl Validator<'_> {
             };
             if !supported {
                 let message = format!(
-                    "output `{name}` depends on type-2 terms, but its defuzzifier has no interval"
+                    "output `{name}` depends on type-2 terms, but the defuzzifier `{}` cannot compute an interval",
+                    output.defuzzifier.word()
                 );
                 let help = "write `defuzzifier: centroid`, `weighted_average` or `weighted_sum`, or remove the keys that make terms type-2, such as `blur` or `lower`";
                 self.error("unsupported-type-2", &spans.name, message, help);
             }
             if output.samples.is_some() {
                 let message = format!("output `{name}` depends on type-2 terms and has `samples`");
-                let help = "remove `samples`: the interval is exact";
+                let help = "remove `samples`: the interval of such an output is always exact";
                 self.error(
                     "unsupported-type-2",
                     or(&spans.samples, &spans.name),
@@ -158,10 +159,10 @@ impl Validator<'_> {
             let of_block = block.and_then(|block| spans.blocks.get(block));
             let here = of_block.map_or(&spans.activation, |block| &block.activation);
             let message = format!(
-                "rule {} reads a type-2 term, but an activation method selects the rules that fire",
+                "rule {} reads a type-2 term, so its firing strength is an interval, and `activation` cannot rank intervals",
                 index + 1
             );
-            let help = "remove `activation`, or the lower membership functions: the strengths are intervals, and which of them is larger is unknown";
+            let help = "remove `activation`, or the keys that make terms type-2, such as `blur` or `lower`";
             self.error("unsupported-type-2", here, message, help);
         }
     }

@@ -6,7 +6,7 @@ use core::ops::Range;
 use super::{MAX_FINDINGS, Validator, or};
 use crate::{
     defuzzify::is_empty,
-    diagnostic::all_of,
+    diagnostic::{all_of, nearest},
     foreign,
     model::{
         Defuzzifier, Formula, MembershipFunction, NoRuleFires, Output, Variable,
@@ -56,14 +56,13 @@ impl Validator<'_> {
             let blamed = error.parameter.and_then(|i| spans.parameters.get(i));
             let here = blamed.unwrap_or(&spans.name);
             let message = format!("{what}: {error}");
-            let help = "the positions of a membership function must ascend, its widths must be greater than 0, and its degrees in [0, 1]";
-            self.error("wrong-parameter", here, message, help);
+            self.error("wrong-parameter", here, message, error.help);
         }
         if !(height > 0.0 && height <= 1.0) {
             let here = or(&spans.height, &spans.name);
             let message = format!("the height {height} of {what} is outside (0, 1]");
             let help = percentage_advice(height).unwrap_or_else(|| {
-                "a height is the largest degree of membership: greater than 0, at most 1".into()
+                "write a number greater than 0 and at most 1: the largest degree of the term".into()
             });
             self.error("wrong-parameter", here, message, &help);
         }
@@ -77,7 +76,7 @@ impl Validator<'_> {
         } else if low >= high {
             let message = format!("the range of {what} starts at {low} and ends at {high}");
             let help = match variable.low == variable.high {
-                true => "the maximum must be above the minimum",
+                true => "write a maximum that is above the minimum",
                 false => "write the minimum first, then the maximum",
             };
             self.error("wrong-range", here, message, help);
@@ -123,7 +122,7 @@ impl Validator<'_> {
         match function {
             MembershipFunction::Linear { .. } => {
                 let message = format!("{what} is a linear function");
-                let help = "only outputs may have one; an input needs a membership function such as `triangle`";
+                let help = "write a membership function such as `triangle`; only outputs can have linear functions";
                 self.error("wrong-term", &spans.name, message, help);
                 return;
             }
@@ -138,9 +137,15 @@ impl Validator<'_> {
         {
             let here = spans.parameters.first().unwrap_or(&spans.name);
             let message = format!("the degree {number} of {what} is outside [0, 1]");
-            let help = format!(
-                "a `constant` of an input is its degree everywhere; for values near {number} write a set such as `triangle`, for only that value `singleton: {number}`"
-            );
+            let help = match function {
+                MembershipFunction::Constant { .. } if (input.low..=input.high).contains(&number) => {
+                    format!(
+                        "in an input, `constant` gives the term the same degree at every value; for values near {number}, write a membership function such as `triangle`, for the value {number} only `singleton: {number}`"
+                    )
+                }
+                MembershipFunction::Constant { .. } => "in an input, `constant` gives the term the same degree at every value: write a degree from 0 to 1".into(),
+                _ => "a degree must lie within [0, 1]: change the formula".into(),
+            };
             self.error("wrong-parameter", here, message, &help);
         }
     }
@@ -159,11 +164,14 @@ impl Validator<'_> {
                 let message = format!("{what}: the formula of a fuzzy set reads `{name}`");
                 let own = &variable.name;
                 let help = match name {
-                    "e" => "write `exp(x)` for a power of e".into(),
+                    "e" => format!("for a power of e, write `exp({own})`"),
                     _ if name.strip_suffix('²') == Some(own) => format!("write `{own}^2`"),
                     _ if name.strip_suffix('³') == Some(own) => format!("write `{own}^3`"),
+                    _ if nearest(name, [own.as_str()]).is_some() => {
+                        format!("did you mean `{own}`?")
+                    }
                     _ => format!(
-                        "write `{own}` for the value of the variable; formulas over several variables are for outputs with `weighted_average` or `weighted_sum`"
+                        "use only `{own}` here; outputs with `weighted_average` or `weighted_sum` can have formulas of several inputs"
                     ),
                 };
                 self.error("wrong-term", here, message, &help);
@@ -182,7 +190,7 @@ impl Validator<'_> {
             return;
         }
         let message = format!("the formula of {what} has no finite value");
-        let help = "division by 0, and roots and logarithms of negative numbers, have no value";
+        let help = "change the formula: division by 0, and roots and logarithms of negative numbers, have no value";
         self.error("wrong-parameter", &spans.name, message, help);
     }
 
@@ -193,7 +201,7 @@ impl Validator<'_> {
         self.variable(&what, variable, spans);
         if variable.terms.is_empty() && !spans.terms_unread {
             let message = format!("{what} has no terms");
-            let help = "write `partition: [low, medium, high]`, or `terms` with a membership function for each";
+            let help = "write `partition: [low, medium, high]`, or `terms` with a membership function for each term";
             self.error("missing-key", &spans.name, message, help);
         }
         if let Some(sampling) = output.samples {
@@ -230,7 +238,6 @@ impl Validator<'_> {
     /// Requires that the terms of a Takagi-Sugeno output are numbers or linear functions, and that the terms of a
     /// Mamdani output are fuzzy sets.
     pub(super) fn consequents_fit(&mut self, what: &str, output: &Output, spans: &VariableSpans) {
-        const WEIGHTED: &str = "it needs `defuzzifier: weighted_average` or `weighted_sum`";
         let weighted = output.defuzzifier.takes_numbers();
         let tsukamoto = output.defuzzifier == Defuzzifier::Tsukamoto;
         let no_spans = TermSpans::default();
@@ -249,8 +256,12 @@ impl Validator<'_> {
                 _ if spans.unread => {}
                 MembershipFunction::Linear { coefficients, .. } => {
                     if !weighted {
-                        let message = format!("{what} is a linear function");
-                        self.error("wrong-term", here, message, WEIGHTED);
+                        let defuzzifier = output.defuzzifier.word();
+                        let message = format!(
+                            "{what} is a linear function, but the defuzzifier `{defuzzifier}` needs fuzzy sets"
+                        );
+                        let help = "write `defuzzifier: weighted_average`, and numbers or linear functions for all terms";
+                        self.error("wrong-term", here, message, help);
                     }
                     self.coefficients(&what, coefficients, spans);
                 }
@@ -265,14 +276,14 @@ impl Validator<'_> {
                 }
                 shape if tsukamoto && !shape.is_monotone() => {
                     let message = format!("{what} is not monotone");
-                    let help = "with `tsukamoto` each degree must belong to exactly one value: write `right_shoulder`, `left_shoulder`, `s_shape`, `z_shape`, `sigmoid`, `concave`, `arc` or a monotone `piecewise`";
+                    let help = "write a membership function that only rises or only falls, such as `right_shoulder` or `left_shoulder`: `tsukamoto` needs exactly one value for each degree";
                     self.error("wrong-term", here, message, help);
                 }
                 MembershipFunction::Singleton { .. } if !weighted && !output.is_discrete() => {
                     let message = format!(
                         "{what} is a singleton, which has no area, but other terms of the output are fuzzy sets"
                     );
-                    let help = "make all terms of the output singletons, or this one a narrow set such as `rectangle`";
+                    let help = "write singletons for all terms of the output, or a narrow set such as `rectangle` for this one";
                     self.error("wrong-term", here, message, help);
                 }
                 MembershipFunction::Singleton { .. }
@@ -307,16 +318,25 @@ impl Validator<'_> {
             return;
         }
         let message = format!(
-            "{subject} {are} fuzzy set{kind}, but the defuzzifier of the output needs numbers"
+            "{subject} {are} fuzzy set{kind}, but the defuzzifier `{}` needs numbers",
+            output.defuzzifier.word()
         );
         let is_monotone = terms
             .clone()
             .all(|term| term.membership_function.is_monotone());
         let defuzzifier = if is_monotone { "tsukamoto" } else { "centroid" };
-        let help = format!(
-            "write `defuzzifier: {defuzzifier}`, or numbers as terms: `{{{}: {{constant: 5}}}}` or `{{linear: {{input: 2, constant: 1}}}}`",
-            names.first().unwrap_or(&"")
-        );
+        let variable = &output.variable;
+        let numbers = terms.map(|term| {
+            let (first, last) = variable.plateau(&term.membership_function);
+            let middle = libm::round(5e5 * (first + last)) / 1e6;
+            format!("{}: {{constant: {middle}}}", term.name)
+        });
+        let numbers: Vec<String> = numbers.collect();
+        let numbers = format!("`{}`", numbers.join(", "));
+        let help = match misfits.len() == variable.terms.len() {
+            true => format!("write `defuzzifier: {defuzzifier}`, or numbers such as {numbers}"),
+            false => format!("make it a number like the other terms, such as {numbers}"),
+        };
         self.error("wrong-term", here, message, &help);
     }
 
@@ -341,11 +361,12 @@ impl Validator<'_> {
             return;
         };
         let message = format!(
-            "term `{}` of {what} is the number {number}, but the output is defuzzified as fuzzy sets",
-            term.name
+            "term `{}` of {what} is the number {number}, but the defuzzifier `{}` needs fuzzy sets",
+            term.name,
+            output.defuzzifier.word()
         );
         let help = if numbers.count() == terms.len() {
-            "add `defuzzifier: weighted_average`"
+            "write `defuzzifier: weighted_average`"
         } else {
             "write a fuzzy set such as `triangle` for it, or numbers for all terms and `defuzzifier: weighted_average`"
         };

@@ -1,10 +1,15 @@
 //! Reasons why a text is not YAML: an unresolved merge conflict, marks of a program at the start of each line, comments of
 //! another language, spaces that YAML does not allow, an open quote, or a missing colon or space after a colon.
 
-use alloc::{string::String, vec::Vec};
+use alloc::{format, string::String, vec::Vec};
 
-use super::foreign::{foreign, lines};
-use crate::diagnostic::Diagnostic;
+use granit_parser::ErrorKind;
+
+use super::{
+    foreign::{foreign, lines},
+    syntax::{SyntaxError, own},
+};
+use crate::{diagnostic::Diagnostic, format::is_key_of_variable};
 
 /// Returns a finding if a text has an unresolved merge conflict, is in another format, is indented with spaces that YAML
 /// does not allow, or has comments that begin with `//`. Call this only for texts that could not be parsed.
@@ -78,7 +83,18 @@ fn marked(lines: &[(usize, &str)]) -> Option<Diagnostic> {
 
 /// Explains a syntax error by a key without a space after its colon, or without a colon, in the same line or in the
 /// line before it.
-pub(super) fn line(text: &str, finding: &Diagnostic) -> Option<Diagnostic> {
+pub(super) fn line(text: &str, error: &SyntaxError) -> Option<Diagnostic> {
+    let finding = &error.finding;
+    if matches!(
+        error.kind,
+        Some(
+            ErrorKind::UnclosedQuotedScalar
+                | ErrorKind::DocumentIndicatorInQuotedScalar
+                | ErrorKind::InvalidQuotedScalarIndent
+        )
+    ) {
+        return None;
+    }
     let before = text.get(..finding.span.start)?;
     let start = before.rfind('\n').map_or(0, |at| at + 1);
     // For example `{triangle [30, 50, 70]}`.
@@ -91,10 +107,15 @@ pub(super) fn line(text: &str, finding: &Diagnostic) -> Option<Diagnostic> {
     if rest.starts_with(['[', '{']) && is_key(key) && before.ends_with(' ') {
         let at = before.trim_end().len() - key.len();
         let end = rest.find([']', '}', '\n']).map_or(0, |end| end + 1);
-        rest.get(..end)?;
+        let value = rest.get(..end)?;
         let message = String::from("a colon is missing before a bracket");
         let finding = Diagnostic::error("yaml-syntax", at..at + key.len(), message);
-        return Some(finding.help("write `key: [value, value]`"));
+        let help = own(
+            text,
+            format!("write `{key}: {value}`"),
+            "write `key: [value, value]`",
+        );
+        return Some(finding.help(help));
     }
     // For example `range:[0, 40]` in this line or the one above, or a line above without its colon.
     if let Some(finding) = brackets_behind_colon(text, finding.span.start, start) {
@@ -107,7 +128,7 @@ pub(super) fn line(text: &str, finding: &Diagnostic) -> Option<Diagnostic> {
     if let Some(finding) = bare.filter_map(|at| key_without_colon(text, at)).next() {
         return Some(finding);
     }
-    if let Some(finding) = inconsistent_indent(text, start) {
+    if let Some(finding) = indented_more(text, start) {
         return Some(finding);
     }
     // For example `unit:°C` in the line above, or `name:fan` in this line.
@@ -117,17 +138,113 @@ pub(super) fn line(text: &str, finding: &Diagnostic) -> Option<Diagnostic> {
     {
         return Some(finding);
     }
-    let is = |kind: &str| finding.message.contains(kind);
-    if is("simple key expected") {
-        return no_colon(text, start);
+    match error.kind {
+        Some(ErrorKind::SimpleKeyExpected) => {
+            of_rules(text, start).or_else(|| no_colon(text, start))
+        }
+        Some(ErrorKind::ExpectedBlockMappingKey) => list_entry(text, start),
+        Some(ErrorKind::MappingValueNotAllowed) => no_key(text, above)
+            .filter(|_| above < start)
+            .or_else(|| second_colon(text, start))
+            .or_else(|| further_right(text, start)),
+        Some(ErrorKind::InvalidTrailingDoubleQuotedScalar) => open_quote(text, start),
+        _ => None,
     }
-    if is("mapping values") {
-        return no_key(text, above).filter(|_| above < start);
+}
+
+/// Returns a finding for a line of a rule that is not indented, or that begins with `-` without a space.
+fn of_rules(text: &str, start: usize) -> Option<Diagnostic> {
+    let (at, content) = content_at(text, start)?;
+    let first = content.split(' ').next().unwrap_or("");
+    if content.starts_with('-') && first.len() > 1 {
+        let finding = Diagnostic::error("yaml-syntax", at..at + 1, "a space is missing after `-`");
+        return Some(finding.help("write `- `, with a space, before each entry of a list"));
     }
-    if is("after double-quoted") {
-        return open_quote(text, start);
+    let continues = ["AND", "OR", "THEN", "WITH"];
+    if !continues
+        .iter()
+        .any(|word| word.eq_ignore_ascii_case(first))
+    {
+        return None;
     }
-    None
+    let message = "this line continues a rule, but is not indented below it";
+    let finding = Diagnostic::error("yaml-syntax", at..at + content.len(), message);
+    Some(finding.help("indent the line more than the `-` of its rule"))
+}
+
+/// Returns a finding for an entry of a list in another column than the entries above, or without a key above it.
+fn list_entry(text: &str, start: usize) -> Option<Diagnostic> {
+    let (at, content) = content_at(text, start)?;
+    if !content.starts_with("- ") {
+        return None;
+    }
+    let above = text.get(..start)?.lines().rev();
+    let mut above = above.filter(|line| !line.trim().is_empty() && !line.trim().starts_with('#'));
+    let is_below_entries = above
+        .next()
+        .is_some_and(|line| line.trim().starts_with("- "));
+    let (message, help) = match is_below_entries {
+        true => (
+            "this entry starts in a different column from the entries above it",
+            "align its `-` with the `-` of the entries above",
+        ),
+        false => (
+            "this list is not below a key",
+            "indent it below its key, such as `rules:`",
+        ),
+    };
+    Some(Diagnostic::error("yaml-syntax", at..at + content.len(), message).help(help))
+}
+
+/// Returns a finding for a line with two colons: `description: how hot: a question`, or `unit: °C, range: [0, 40]`.
+fn second_colon(text: &str, start: usize) -> Option<Diagnostic> {
+    let (at, content) = content_at(text, start)?;
+    let (key, value) = content.split_once(": ")?;
+    let (before, _) = value.split_once(": ")?;
+    let key = key.trim_start_matches("- ");
+    let colon = at + content.len() - value.len() + before.len();
+    let is_second_key = before.rsplit_once(", ").is_some_and(|(_, key)| is_key(key));
+    let (message, help) = match is_second_key {
+        true => (
+            "this line contains a second key",
+            "write each key on a line of its own".into(),
+        ),
+        false => {
+            let value = value.trim().replace('"', "\\\"");
+            let general = "put the text in quotes";
+            (
+                "a text that contains `: ` must be in quotes",
+                own(text, format!("write `{key}: \"{value}\"`"), general),
+            )
+        }
+    };
+    Some(Diagnostic::error("yaml-syntax", colon..colon + 1, message).help(help))
+}
+
+/// Returns a finding for a key that is indented more than the key above, and for a colon in a text of several lines.
+fn further_right(text: &str, start: usize) -> Option<Diagnostic> {
+    let (at, content) = content_at(text, start)?;
+    let above = text.get(..start)?.lines().rev();
+    let mut above = above.filter(|line| !line.trim().is_empty());
+    let line = above.next()?;
+    let is_more = at - start > line.len() - line.trim_start().len();
+    let (message, help) = match line.trim().split_once(": ") {
+        Some((key, _)) if is_key(key) && is_more => (
+            "this key is indented more than the key above it",
+            own(
+                text,
+                format!("begin it in the same column as `{key}:`"),
+                "begin the keys of one mapping in the same column",
+            ),
+        ),
+        None if is_more => (
+            "a text that contains `: ` must be in quotes",
+            "put the whole text in quotes: write `\"` at its beginning and at its end".into(),
+        ),
+        _ => return None,
+    };
+    let colon = content.find(": ").map_or(content.len(), |colon| colon + 1);
+    Some(Diagnostic::error("yaml-syntax", at..at + colon, message).help(help))
 }
 
 /// Returns the line that starts at `start` without its indentation, and the position of its content.
@@ -137,8 +254,7 @@ fn content_at(text: &str, start: usize) -> Option<(usize, &str)> {
     Some((start + line.len() - content.len(), content.trim_end()))
 }
 
-/// Returns a finding for a line such as `unit:°C`. The message does not quote the text, because it may come from any
-/// file, for example one with secrets.
+/// Returns a finding for a line such as `unit:°C`.
 fn missing_space_after_colon(text: &str, start: usize) -> Option<Diagnostic> {
     let (at, content) = content_at(text, start)?;
     let (key, value) = content.split_once(':')?;
@@ -147,21 +263,28 @@ fn missing_space_after_colon(text: &str, start: usize) -> Option<Diagnostic> {
     }
     let message = "a space is missing after a colon";
     let finding = Diagnostic::error("yaml-syntax", at..at + content.len(), message);
-    Some(finding.help("write `key: value`"))
+    Some(finding.help(own(
+        text,
+        format!("write `{key}: {value}`"),
+        "write `key: value`",
+    )))
 }
 
 /// Returns a finding for a line such as `name fan` or `name = fan`.
 fn no_colon(text: &str, start: usize) -> Option<Diagnostic> {
     let (at, content) = content_at(text, start)?;
-    let mut words = content.split([' ', '=']).filter(|word| !word.is_empty());
-    let is_pair =
-        words.next().is_some_and(is_key) && words.next().is_some() && words.next().is_none();
-    if !is_pair || content.contains(": ") {
+    let words = content.split([' ', '=']).filter(|word| !word.is_empty());
+    let words: Vec<&str> = words.collect();
+    let [key, value] = words.as_slice() else {
+        return no_key(text, start);
+    };
+    if !is_key(key) || content.contains(": ") {
         return no_key(text, start);
     }
     let message = "a colon is missing after a key";
     let finding = Diagnostic::error("yaml-syntax", at..at + content.len(), message);
-    Some(finding.help("write `key: value`, with a colon and a space"))
+    let general = "write `key: value`, with a colon and a space";
+    Some(finding.help(own(text, format!("write `{key}: {value}`"), general)))
 }
 
 /// Returns a finding for a line of plain text in place of a key, such as a comment without its `#`.
@@ -183,12 +306,11 @@ fn no_key(text: &str, start: usize) -> Option<Diagnostic> {
     (is_plain && !continues && !is_of_rule).then(|| {
         let message = "the line is plain text, without a key";
         let finding = Diagnostic::error("yaml-syntax", at..at + content.len(), message);
-        finding.help("a comment begins with `#`; a value comes after its key: `key: value`")
+        finding.help("remove the line, or begin it with `#` to make it a comment")
     })
 }
 
-/// Returns a finding for a double quote that is not closed on its own line, so that a quote on a later line, at
-/// `start`, closes it.
+/// Returns a finding for a double quote that is not closed in its line; the quote of a later line, at `start`, closes it.
 fn open_quote(text: &str, start: usize) -> Option<Diagnostic> {
     let mut at = 0;
     let mut open = None;
@@ -212,7 +334,7 @@ fn open_quote(text: &str, start: usize) -> Option<Diagnostic> {
 }
 
 /// Returns a finding if the line that starts at `start` is indented less than the first line of its mapping.
-fn inconsistent_indent(text: &str, start: usize) -> Option<Diagnostic> {
+fn indented_more(text: &str, start: usize) -> Option<Diagnostic> {
     let indent = |line: &str| line.len() - line.trim_start().len();
     let line = text.get(start..)?.lines().next()?;
     let here = indent(line);
@@ -232,11 +354,13 @@ fn inconsistent_indent(text: &str, start: usize) -> Option<Diagnostic> {
         }
         if indent(line) < here {
             let (at, line) = first.filter(|_| content.ends_with(':'))?;
-            let message =
-                String::from("the line is indented more than the later ones of its mapping");
+            let message = "the line is indented more than the following lines of the same mapping";
             let finding = Diagnostic::error("yaml-syntax", at..at + str::len(line), message);
-            let help = "begin the keys of one mapping in the same column; if these are the keys of an input or output, write its name above them";
-            return Some(finding.help(help));
+            let key = line.split(':').next().unwrap_or("");
+            return Some(finding.help(match is_key_of_variable(key) {
+                true => "write the name of the input or output above this line",
+                false => "begin the keys of one mapping in the same column",
+            }));
         }
         if indent(line) == here {
             return None;
@@ -258,8 +382,8 @@ fn is_key(key: &str) -> bool {
 fn brackets_behind_colon(text: &str, at: usize, start: usize) -> Option<Diagnostic> {
     let finding = |colon: usize| {
         let message = String::from("a space is missing after a colon");
-        let help = "write `key: [value, value]`, with a space after the colon";
-        Diagnostic::error("yaml-syntax", colon..colon + 1, message).help(help)
+        Diagnostic::error("yaml-syntax", colon..colon + 1, message)
+            .help("write a space after the colon")
     };
     let here = text.get(at..)?;
     if here.starts_with(":[") || here.starts_with(":{") {
@@ -286,7 +410,12 @@ fn key_without_colon(text: &str, start: usize) -> Option<Diagnostic> {
     let is_meant = is_key(content) && indent(below) > indent(line) && below.contains(':');
     is_meant.then(|| {
         let message = String::from("a colon is missing after a key");
-        Diagnostic::error("yaml-syntax", at..at + content.len(), message).help("write `key:`")
+        let help = own(
+            text,
+            format!("write `{content}:`"),
+            "write a colon after it",
+        );
+        Diagnostic::error("yaml-syntax", at..at + content.len(), message).help(help)
     })
 }
 
@@ -295,9 +424,14 @@ pub(super) fn comment(text: &str, finding: &mut Diagnostic) {
     let rest = text.get(finding.span.end..).unwrap_or("");
     let rest = rest.lines().next().unwrap_or("").trim_start();
     if finding.code == "rule-syntax"
-        && rest.starts_with('#')
+        && let Some(comment) = rest.strip_prefix('#')
         && let Some(help) = &mut finding.help
     {
-        help.push_str("; `#` begins a comment");
+        let mut words = comment.split_whitespace();
+        let is_rule = words.any(|word| ["AND", "OR", "THEN"].contains(&word));
+        match is_rule {
+            true => *help = "remove the `#`: it begins a comment".into(),
+            false => help.push_str("; `#` begins a comment"),
+        }
     }
 }

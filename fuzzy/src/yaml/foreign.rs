@@ -33,14 +33,14 @@ pub(super) fn foreign(text: &str) -> Option<Diagnostic> {
         return foreign(
             first,
             message,
-            "look for the lines that are missing at its start",
+            "copy the whole file again: its first lines are missing",
         );
     }
     if let Some(program) = program(first.1) {
         let message = format!("this is {program}, not a rule set in YAML");
         let help = match program {
             WEB_PAGE => "download the file itself; on GitHub, the button `Raw` shows it",
-            CPP => "let the program write FLL with its `FllExporter`, and name that file",
+            CPP => "let the program write FLL with `FllExporter`, and use that file",
             _ => "write inputs, outputs and rules as YAML; a rule set begins with `fuzzy: 1`",
         };
         return foreign(first, message, help);
@@ -50,7 +50,7 @@ pub(super) fn foreign(text: &str) -> Option<Diagnostic> {
         return foreign(
             first,
             message,
-            "name a file with a rule set; a command that also reads a table takes it after the rule set",
+            "use a rule set here; a command that also reads a table takes it after the rule set",
         );
     }
     None

@@ -8,7 +8,7 @@
 use alloc::{boxed::Box, collections::BTreeMap, string::String, vec::Vec};
 use core::{ops::Range, str::FromStr};
 
-use granit_parser::{ErrorKind, Event, Parser, ScalarStyle, ScanError, Span};
+use granit_parser::{Event, Parser, ScalarStyle, Span};
 
 use crate::{
     diagnostic::{Diagnostic, Findings},
@@ -19,9 +19,12 @@ use crate::{
 
 mod cause;
 mod foreign;
+mod syntax;
 #[cfg(test)]
 mod tests;
 mod write;
+
+use syntax::{SyntaxError, syntax};
 #[doc(hidden)]
 pub use write::{to_line, to_text};
 
@@ -48,11 +51,25 @@ pub fn read(text: &str) -> Result<Node, Findings> {
         let finding = finding.help("rule sets and profiles are small YAML files");
         return Err(Findings::locate(alloc::vec![finding], ""));
     }
-    build(text).map_err(|finding| {
+    build(text).map_err(|error| {
         let finding = cause::cause(text)
-            .or_else(|| cause::line(text, &finding))
-            .unwrap_or(*finding);
+            .or_else(|| cause::line(text, &error))
+            .unwrap_or(error.finding);
         Findings::locate(alloc::vec![finding], text)
+    })
+}
+
+/// Returns whether a line of a text begins with a key that only rule sets and profiles have. Other files are never
+/// quoted in messages: a profile from somebody else may name a file that contains secrets.
+#[doc(hidden)] // For the programs of this repository.
+#[must_use]
+pub fn is_meant_as_rules(text: &str) -> bool {
+    text.lines().any(|line| {
+        let line = line.trim_start_matches([' ', '-', '{', '"', '\'']);
+        ["fuzzy", "inputs", "outputs", "rules"].iter().any(|key| {
+            let rest = line.strip_prefix(key);
+            rest.is_some_and(|rest| rest.trim_start_matches(['"', '\'', ' ']).starts_with(':'))
+        })
     })
 }
 
@@ -151,7 +168,7 @@ struct SizedNode {
     depth: usize,
 }
 
-fn build(text: &str) -> Result<Node, Box<Diagnostic>> {
+fn build(text: &str) -> Result<Node, Box<SyntaxError>> {
     let options = granit_parser::options! {
         flow_nesting_limit: DEEPEST,
         block_nesting_limit: DEEPEST,
@@ -164,11 +181,24 @@ fn build(text: &str) -> Result<Node, Box<Diagnostic>> {
         let (event, span) = event.map_err(|error| syntax(text, &error))?;
         let bytes = span.byte_range().unwrap_or(0..0);
         if document.is_some() && matches!(event, Event::DocumentStart(..)) {
-            return Err(Box::new(
-                Diagnostic::error("yaml-syntax", bytes, "a second document begins here").help(
-                    "a file contains one document; remove the line `---` and everything after it",
-                ),
-            ));
+            let from = bytes.start;
+            let finding = Diagnostic::error("yaml-syntax", bytes, "a second document begins here");
+            let rest = text
+                .get(from..)
+                .unwrap_or("")
+                .trim_start_matches('-')
+                .trim_start();
+            // A complete second file begins with the same key as the first one.
+            let first_key = text.split(':').next().unwrap_or("");
+            let is_complete = rest
+                .strip_prefix(first_key)
+                .is_some_and(|rest| rest.starts_with(':'));
+            return Err(finding
+                .help(match is_complete {
+                    true => "a file contains one document: remove the line `---` and everything after it",
+                    false => "a file contains one document: remove the line `---`",
+                })
+                .into());
         }
         let (done, anchor) = match event {
             Event::Scalar(value, style, anchor, tag) => {
@@ -206,14 +236,9 @@ fn build(text: &str) -> Result<Node, Box<Diagnostic>> {
             }
             Event::Alias(id) => {
                 let Some(target) = anchors.get(&id) else {
-                    return Err(Box::new(
-                        Diagnostic::error(
-                            "yaml-syntax",
-                            bytes,
-                            "the alias is inside the value that it names",
-                        )
-                        .help("write the value out here"),
-                    ));
+                    let message = "the alias is inside the value that it names";
+                    let finding = Diagnostic::error("yaml-syntax", bytes, message);
+                    return Err(finding.help("write the value out here").into());
                 };
                 from_aliases += target.values;
                 let depth = target.depth + open.len();
@@ -221,10 +246,9 @@ fn build(text: &str) -> Result<Node, Box<Diagnostic>> {
                     let message = alloc::format!(
                         "aliases expand to more than {MAX_FROM_ALIASES} values or {DEEPEST} levels"
                     );
-                    return Err(Box::new(
-                        Diagnostic::error("yaml-too-large", bytes, message)
-                            .help("write the values out, or use fewer aliases"),
-                    ));
+                    let finding = Diagnostic::error("yaml-too-large", bytes, message);
+                    let help = "write the values out, or use fewer aliases";
+                    return Err(finding.help(help).into());
                 }
                 (target.clone(), 0)
             }
@@ -239,10 +263,9 @@ fn build(text: &str) -> Result<Node, Box<Diagnostic>> {
         }
     }
     document.filter(|node| !node.is_null()).ok_or_else(|| {
-        Box::new(
-            Diagnostic::error("empty-file", 0..0, "the file is empty")
-                .help("write a rule set; it begins with `fuzzy: 1`"),
-        )
+        Diagnostic::error("empty-file", 0..0, "the file is empty")
+            .help("write a rule set; it begins with `fuzzy: 1`")
+            .into()
     })
 }
 
@@ -285,72 +308,14 @@ fn put(parent: &mut OpenCollection, child: SizedNode) {
     }
 }
 
-fn refuse_tag(span: &Span, tagged: bool) -> Result<(), Box<Diagnostic>> {
+fn refuse_tag(span: &Span, tagged: bool) -> Result<(), Box<SyntaxError>> {
     if !tagged {
         return Ok(());
     }
     let tag = span.tag_span().unwrap_or(*span);
     let bytes = tag.byte_range().unwrap_or(0..0);
-    Err(Box::new(
-        Diagnostic::error("yaml-syntax", bytes, "tags are not supported").help("remove the tag"),
-    ))
-}
-
-fn syntax(text: &str, error: &ScanError) -> Box<Diagnostic> {
-    let at = error.marker().byte_offset().unwrap_or(text.len());
-    let length = text.get(at..).and_then(|rest| rest.chars().next());
-    let span = at..at + length.map_or(0, char::len_utf8);
-    let help = match error.kind() {
-        ErrorKind::TabNotAllowed
-        | ErrorKind::TabInBlockIndentation
-        | ErrorKind::TabInIndentation
-        | ErrorKind::TabAtBlockScalarStart => "indent with spaces",
-        ErrorKind::UnclosedQuotedScalar
-        | ErrorKind::DocumentIndicatorInQuotedScalar
-        | ErrorKind::InvalidQuotedScalarIndent => "add the closing quote",
-        ErrorKind::MappingValueNotAllowed => {
-            "put text that contains `: ` in quotes; begin the keys of one mapping in the same column"
-        }
-        ErrorKind::InvalidTrailingSingleQuotedScalar => {
-            "the text ends at the quote before this point: write `''` for an apostrophe in single quotes, or use double quotes"
-        }
-        ErrorKind::InvalidTrailingDoubleQuotedScalar => {
-            "the text ends at the quote before this point: write `\\\"` for a quote in double quotes"
-        }
-        ErrorKind::ExpectedBlockSequenceEntry => {
-            "all entries of a list begin with `-`; inputs, outputs and blocks have names, and no `-`"
-        }
-        ErrorKind::UnknownAnchor => "define it with `&name` before it is used",
-        ErrorKind::UnexpectedCharacter { .. } => {
-            "put text that begins with a special character in quotes"
-        }
-        ErrorKind::RecursionLimitExceeded => "a rule set needs only a few levels",
-        ErrorKind::UnknownQuotedScalarEscape => {
-            "write `\\\\` for a backslash, or use single quotes"
-        }
-        ErrorKind::UnclosedFlowCollection { .. }
-        | ErrorKind::InvalidColonPlacement
-        | ErrorKind::ExpectedFlowMappingSeparator
-        | ErrorKind::ExpectedFlowSequenceSeparator
-        | ErrorKind::UnexpectedEofFlowMapping
-        | ErrorKind::UnexpectedEofFlowSequence => {
-            "look for a missing `]`, `}` or comma before this point"
-        }
-        _ => "check the indentation, and the quotes and brackets before this point",
-    };
-    Box::new(
-        Diagnostic::error(
-            "yaml-syntax",
-            span,
-            match error.kind() {
-                ErrorKind::RecursionLimitExceeded => {
-                    alloc::format!("lists and mappings are nested deeper than {DEEPEST}")
-                }
-                kind => alloc::format!("invalid YAML: {kind}"),
-            },
-        )
-        .help(help),
-    )
+    let finding = Diagnostic::error("yaml-syntax", bytes, "tags are not supported");
+    Err(finding.help("remove the tag").into())
 }
 
 fn scalar(document: &str, value: &str, style: ScalarStyle, bytes: &Range<usize>) -> Scalar {

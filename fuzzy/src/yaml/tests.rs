@@ -52,7 +52,7 @@ fn a_text_that_is_not_a_document_is_one_finding_with_its_position() {
     for (text, position, code) in [
         ("", "1:1", "empty-file"),
         ("# nothing\n", "1:1", "empty-file"),
-        ("a: [1, 2\nb: 3", "2:2", "yaml-syntax"),
+        ("a: [1, 2\nb: 3", "1:4", "yaml-syntax"),
         ("a: 'x", "1:4", "yaml-syntax"),
         ("a: b: c", "1:5", "yaml-syntax"),
         ("a: 1\n---\nb: 2", "2:1", "yaml-syntax"),

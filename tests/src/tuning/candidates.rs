@@ -38,7 +38,7 @@ pub fn candidate(model: &Model, inputs: &[&str]) -> Model {
     model
 }
 
-/// The factor by which the weights of learned votes are multiplied, because the vote of a sudden change is added.
+/// The factor for the weights of the learned rules. It compensates for the additional rule about sudden changes.
 const BESIDE_STEP: f64 = 0.66;
 
 /// Adds a vote of `unsteady_now` that only raises the risk: on a craft with large reserves, a sudden change is the first sign of

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use clap::{Arg, Command};
 
-use super::words::{FILES, OPTIONS, PICTURES, RENAMED, WRITTEN};
-use crate::path::has_ending;
+use super::words::{DIRECTIONS, FILES, OPTIONS, PICTURES, RENAMED, WRITTEN};
+use crate::path::{RULES, has_ending};
 
 /// A command and the words after it.
 pub(super) struct Line<'a> {
@@ -36,6 +36,15 @@ impl<'a> Line<'a> {
             .find(|(commands, others, _)| has_word(commands, name) && has_word(others, option))
         {
             return Some(advice.replace("VALUE", value.unwrap_or("COLUMN")));
+        }
+        // For example `--monotone temperature:increasing`.
+        if let Some((input, direction)) = value.and_then(|value| value.rsplit_once(':'))
+            && self.has("--rising")
+            && let Some(here) = DIRECTIONS
+                .iter()
+                .find(|(words, _)| has_word(words, direction))
+        {
+            return Some(format!("write `{} {}`", here.1, in_shell(input)));
         }
         // The name of an option may have been given as a value, as in `--format fis` instead of `--fis`.
         let is_choice = [
@@ -240,6 +249,26 @@ impl<'a> Line<'a> {
             }
         }
         found
+    }
+
+    /// Advice for an option whose value is the file that is missing, as in `--rising fan.yaml`.
+    pub(super) fn taken_file(&self) -> Option<String> {
+        let pair = self.words.windows(2).find(|pair| match pair {
+            [option, value] => {
+                let takes = self.arg(option).is_some_and(takes_value);
+                takes && has_ending(Path::new(value), RULES) && Path::new(value).exists()
+            }
+            _ => false,
+        });
+        let [option, file] = pair? else { return None };
+        let argument = self.arg(option)?;
+        let name = argument.get_value_names()?.first()?;
+        let (command, file) = (self.command.get_name(), in_shell(file));
+        (!name.contains("FILE") && !name.contains("PATH")).then(|| {
+            format!(
+                "`{option}` took `{file}` as its value: write `flagred {command} {file} {option} {name}`"
+            )
+        })
     }
 
     pub(super) fn has(&self, option: &str) -> bool {

@@ -192,6 +192,11 @@ fn required(error: &clap::Error, program: &Command, words: &[String]) -> Vec<Str
             let values: Vec<&str> = values.iter().map(|value| value.get_name()).collect();
             return Some(format!("write one of {}", values.join(", ")));
         }
+        if argument.is_positional()
+            && let Some(advice) = line.taken_file()
+        {
+            return Some(advice);
+        }
         let name = argument.get_value_names()?.first()?;
         let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
         let mut others = positionals

@@ -102,7 +102,7 @@ pub(super) const RENAMED: &[(&str, &str)] = &[
     ("--report --html-report", "--html"),
     ("--overwrite --yes --replace -f -y", "--force"),
     ("--resolution --grid --samples --n -n", "--points"),
-    ("--set --at --with-value", "--hold"),
+    ("--set --at --with-value --fix --fixed", "--hold"),
     (
         "--skip --lenient --ignore-errors --skip-errors --skip-invalid",
         "--skip-bad-rows",
@@ -139,6 +139,12 @@ pub(super) const RENAMED: &[(&str, &str)] = &[
     ("--jfuzzylogic", "--fcl"),
     ("--jfml --xml", "--fml"),
     ("--ardupilot", "--lua"),
+];
+
+/// Directions after the name of an input, and the option for each.
+pub(super) const DIRECTIONS: &[(&str, &str)] = &[
+    ("increasing rising inc up", "--rising"),
+    ("decreasing falling dec down", "--falling"),
 ];
 
 /// Options of flagred that take the name of a file to write.

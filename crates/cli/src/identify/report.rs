@@ -111,8 +111,8 @@ fn cross_validation(
         held_out::folds(validation.folds)
     )?;
     let ratio = match validation.ratio {
-        ratio if ratio.value < 100.0 => format!("the first is {} of it", figure(&ratio)),
-        _ => "the first is over 100 times as large".to_owned(),
+        ratio if ratio.value < 100.0 => format!("ratio {}", figure(&ratio)),
+        _ => "ratio over 100".to_owned(),
     };
     writeln!(
         out,

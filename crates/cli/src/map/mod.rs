@@ -179,7 +179,20 @@ fn axis(text: &str) -> Result<AxisChoice, String> {
         None => {
             let ends = part.split(['-', ',', ':']).map(str::trim);
             let ends: Vec<&str> = ends.filter(|end| end.parse::<f64>().is_ok()).collect();
+            let falling = part
+                .split_once("..")
+                .map(|(low, high)| (low.trim(), high.trim()));
+            let is_number = |end: &str| end.parse::<f64>().is_ok_and(f64::is_finite);
             Err(match ends.as_slice() {
+                _ if let Some((high, low)) = falling
+                    && is_number(high)
+                    && is_number(low) =>
+                {
+                    match high == low {
+                        true => "write two different ends".to_owned(),
+                        false => format!("write the low end first: `{name}:{low}..{high}`"),
+                    }
+                }
                 [low, high] => format!("write `{name}:{low}..{high}`"),
                 _ => "write `INPUT` or `INPUT:LOW..HIGH`".to_owned(),
             })

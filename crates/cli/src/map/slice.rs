@@ -78,7 +78,14 @@ pub(super) fn axes(arguments: &Arguments, evaluated: &MapSource) -> Result<Axes,
         .filter(|input| Some(*input) != asked_x && Some(*input) != asked_y);
     let x = asked_x
         .or_else(|| free.next())
-        .ok_or_else(|| Failure::usage("every input is fixed, none is left for an axis"))?;
+        .ok_or_else(|| {
+            let values = arguments.hold.iter().map(|(name, value)| format!(" {name}={value}"));
+            let values: String = values.collect();
+            let failure = Failure::usage("every input is fixed, none is left for an axis");
+            failure.help(format!(
+                "leave out one `--hold`; `flagred explain RULES{values}` evaluates the output at this point"
+            ))
+        })?;
     let y = asked_y.or_else(|| free.next());
 
     let points = arguments.points.map_or(POINTS, usize::from);

@@ -2,6 +2,7 @@
 
 use fuzzy::diagnostic::quoted;
 
+use super::cell::Cell;
 use crate::failure::Failure;
 
 /// The first row of a table.
@@ -107,7 +108,9 @@ impl Header {
     pub(crate) fn misfit(&self, record: &csv::ByteRecord) -> Option<(String, bool)> {
         let (cells, expected) = (record.len(), self.names.len());
         let first = record.get(0);
-        if cells != expected && record.iter().any(|cell| cell.contains(&b'\n')) {
+        let last = cells.checked_sub(1).and_then(|last| record.get(last));
+        let is_open = last.is_some_and(|cell| self.contains_rows(cell));
+        if is_open || cells != expected && record.iter().any(|cell| cell.contains(&b'\n')) {
             let problem = "the quote is never closed, so the lines after it are read as one cell";
             return Some((problem.to_owned(), false));
         }
@@ -125,6 +128,21 @@ impl Header {
                 true,
             )
         })
+    }
+
+    /// Whether a cell contains further rows, or the end of its own row, because its quote is not closed.
+    fn contains_rows(&self, cell: &[u8]) -> bool {
+        let mut lines = cell.split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii);
+        let first = lines.next().unwrap_or_default();
+        let rest: Vec<&[u8]> = lines.collect();
+        let is_number = matches!(Cell::of(first), Cell::Number(_));
+        let is_row = |line: &&[u8]| {
+            let delimiters = line.iter().filter(|byte| **byte == self.delimiter).count();
+            delimiters > 0 && delimiters + 1 == self.names.len()
+        };
+        let mut rows = rest.iter().filter(|line| !line.is_empty()).peekable();
+        let has_rows = rows.peek().is_some();
+        !rest.is_empty() && rows.all(is_row) && (has_rows || is_number)
     }
 
     /// The name of a column.

@@ -57,7 +57,7 @@ impl Extent {
             self.count >= FEWEST && self.has_fraction && self.low >= 0.0 && self.high <= 1.0;
         (is_share && high - low >= NARROWEST).then(|| {
             format!(
-                "warning: all {} values of `{name}` are from {} to {}, but its range is {low} to {high}: is the column a share instead of a percentage?",
+                "warning: all {} values of `{name}` are from {} to {}, but its range is {low} to {high}: is the column a fraction instead of a percentage?",
                 self.count, self.low, self.high
             )
         })

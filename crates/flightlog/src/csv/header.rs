@@ -325,6 +325,16 @@ fn geometry_of(header: &[HeaderLine], motors: usize) -> Result<DeclaredLayout, R
                     "write class and type as ArduPilot does, such as `QUAD/X` or `HEXA/PLUS`",
                 )
             })?;
+            if let (class, None) = known
+                && let Some((name, kind)) = entry.value.split_once('/')
+                && !is_ours(header)
+            {
+                let text = format!("unknown frame type `{kind}` of `{name}`");
+                let kinds = tables::kinds_of(class).join("`, `");
+                let help =
+                    format!("write one of the types of ArduPilot after `{name}/`: `{kinds}`");
+                return Err(problem(entry.line, text, &help));
+            }
             Ok((entry.value.clone(), known))
         })
         .transpose()?;

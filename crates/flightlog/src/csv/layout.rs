@@ -103,6 +103,12 @@ impl Layout {
         }
         let motors: Vec<usize> = motors.into_iter().map(|(_, column)| column).collect();
         let in_air = find("in_air");
+        if in_air.is_none()
+            && let Some(given) = names.iter().find(|name| is_meant_as_in_air(name))
+        {
+            let text = format!("there is a column `{given}`, but no `in_air`");
+            return Err(problem(line, text, "rename the column to `in_air`"));
+        }
         let signals = names
             .iter()
             .enumerate()
@@ -150,6 +156,14 @@ fn meant_as_motor(names: &[String]) -> Option<(&str, String)> {
         let number = name.strip_prefix("motor").or(name.strip_prefix("pwm"))?;
         number.parse::<u64>().ok().map(|_| (given.as_str(), name))
     })
+}
+
+/// Whether the name of a column consists of the letters of `in_air`, such as `inair`, `In Air` or `in_ari`.
+fn is_meant_as_in_air(name: &str) -> bool {
+    let letters = name.chars().filter(|c| c.is_ascii_alphanumeric());
+    let mut letters: Vec<char> = letters.map(|c| c.to_ascii_lowercase()).collect();
+    letters.sort_unstable();
+    letters == ['a', 'i', 'i', 'n', 'r']
 }
 
 /// Advice for a table without `t_s`: its column of times may have another name.

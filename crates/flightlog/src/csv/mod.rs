@@ -49,7 +49,8 @@ pub(crate) fn looks_like(start: &[u8]) -> bool {
     let is_table = columns > 1
         && cells(header).all(is_name)
         && row.is_some_and(|row| cells(row).count() == columns);
-    let is_unsigned = entry_without_sign(start).is_some();
+    // A line for spreadsheets, such as `sep=,`, is refused with advice.
+    let is_unsigned = entry_without_sign(start).is_some() || header.starts_with(b"sep=");
     let names_times = || content(start).any(|line| cells(line).any(|name| name == b"t_s"));
     is_table || has_times(start) || (is_unsigned && names_times())
 }
@@ -147,6 +148,9 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> Result<Flight, R
     flight.boots_s = rows.boots_s;
     flight.rebooted_in_air_s = rows.rebooted_in_air_s;
     flight.series = preferred(vec![rows.series]);
+    if let Some(refused) = battery_fraction(&flight, lines + 1).filter(|_| !is_ours) {
+        return Err(refused);
+    }
     let declared = apply_header(&mut flight, header, &layout, span_s)?;
     flight.range = options.range_or_given(flight.range);
     // If the limits are unknown, so is the meaning of the commands; then only fractions are refused.
@@ -157,6 +161,28 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> Result<Flight, R
     }
     flight.geometry = geometry::find(&flight, &declared);
     Ok(flight)
+}
+
+/// The error for a state of charge from 0 to 1 in place of percent: no vehicle flies with a battery below 1 %.
+fn battery_fraction(flight: &Flight, line: u64) -> Option<ReadError> {
+    let signal = flight.signal("battery_remaining_pct")?;
+    let known = || {
+        signal
+            .values
+            .iter()
+            .copied()
+            .filter(|value| value.is_finite())
+    };
+    let most = known().fold(0.0, f64::max);
+    if !(0.1..=1.0).contains(&most) || known().all(|value| value.fract() == 0.0) {
+        return None;
+    }
+    let text = "all values of `battery_remaining_pct` are from 0 to 1, but it is in percent";
+    Some(problem(
+        line,
+        text,
+        "write percent: multiply the values by 100",
+    ))
 }
 
 const HELP: &str = "a flight CSV has the columns `t_s` and `pwm1`.. (us) or `motor1`.. (0 to 1)";

@@ -137,6 +137,14 @@ pub(super) fn name(class: i64, kind: i64) -> String {
     }
 }
 
+/// Names of the types of a class that have a table.
+pub(crate) fn kinds_of(class: i64) -> Vec<&'static str> {
+    let kinds = KINDS
+        .iter()
+        .filter(|(kind, _)| layout(class, *kind).is_some());
+    kinds.map(|(_, name)| *name).collect()
+}
+
 /// Class and type of a frame by its name, such as `QUAD/X`; older firmware logs only the class.
 pub(crate) fn parse(name: &str) -> Option<(i64, Option<i64>)> {
     let name = name.trim().to_ascii_uppercase();

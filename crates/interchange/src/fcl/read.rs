@@ -140,7 +140,7 @@ impl<'r, 't> Reader<'r, 't> {
         let end = expected.split('`').find(|word| word.starts_with("END_"));
         let help = match end.filter(|_| is_section(part)) {
             Some(end) => format!("write `{end}` before `{part}`"),
-            None => "see IEC 61131-7 for the form of a file".into(),
+            None => format!("correct `{part}`, or write what is expected before it"),
         };
         self.draft.error("fcl-syntax", part, message, &help);
     }
@@ -255,6 +255,11 @@ impl<'r, 't> Reader<'r, 't> {
             if input.low.is_nan() {
                 (input.low, input.high) = (0.0, 1.0);
             }
+        }
+        if !self.is_cut_off {
+            let help =
+                "declare an output in `VAR_OUTPUT`, and write its terms in a section `DEFUZZIFY`";
+            self.draft.require_output(help);
         }
         self.draft.finish()
     }

@@ -179,6 +179,19 @@ impl<'t> Reader<'_, 't> {
                 "RANGE",
                 "DEFAULT",
             ]);
+            let count = |sign: &str| statement.iter().filter(|word| **word == sign).count();
+            if count("(") > count(")")
+                && let Some(x) = statement.last()
+                && self.ended()
+            {
+                // For example `(4; 0)`: the semicolon ends the statement.
+                let rest = self.statement(&[]);
+                let y = rest.first().copied().unwrap_or_default();
+                let message = "a point contains a semicolon, which ends the statement".into();
+                self.draft
+                    .error("fcl-syntax", x, message, &format!("write `({x}, {y})`"));
+                return true;
+            }
             if let [name, sign @ ("=" | ":"), ..] = statement {
                 let message = format!("expected `:=` after `{name}`, found `{sign}`");
                 let help = format!("write `TERM {name} := ...;`");

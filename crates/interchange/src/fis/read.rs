@@ -1,6 +1,7 @@
 //! Reads FIS.
 
 use fuzzy::{
+    diagnostic::quoted,
     format::{Document, TermSpans, VariableSpans},
     model::{Defuzzifier, Formula, Output, Variable},
 };
@@ -125,12 +126,25 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
     let outputs = draft.model.outputs.len();
     count(&mut draft, system, "NumInputs", names.len());
     count(&mut draft, system, "NumOutputs", outputs);
+    draft
+        .require_output("add a section `[Output1]`, or copy the whole file again if it is cut off");
     // Rules refer to terms by number, so all variables must exist.
     if !draft.has_errors() {
         let section = sections
             .iter()
             .find(|s| s.name.eq_ignore_ascii_case("Rules"));
         let entries = section.map_or(&[][..], |section| &section.entries);
+        if section.is_none() && system.get("NumRules").is_some_and(|number| number != "0") {
+            let start = draft.text.get(..0).unwrap_or_default();
+            let help = "copy the whole file again if it is cut off; for a file without rules write `NumRules=0`";
+            draft.error(
+                "wrong-count",
+                start,
+                "there is no section `[Rules]`".into(),
+                help,
+            );
+            return draft.finish();
+        }
         count(&mut draft, system, "NumRules", entries.len());
         for entry in entries {
             let rules = draft.model.rules.len();
@@ -410,8 +424,14 @@ fn count(draft: &mut ModelDraft<'_>, section: &Section<'_>, key: &str, found: us
     let Some(written) = section.get(key) else {
         return;
     };
-    if written.parse() != Ok(found) {
-        let message = format!("`{key}` is {written}, but the file has {found}");
+    if written.parse() == Ok(found) {
+        return;
+    }
+    let message = format!("`{key}` is {}, but the file has {found}", quoted(written));
+    if found == 0 && written.parse::<usize>().is_ok() {
+        let help = "copy the whole file again: it is cut off";
+        draft.error("wrong-count", written, message, help);
+    } else {
         let help = "check that the file is complete; the items that it contains are read";
         draft.warning("wrong-count", written, message, help);
     }

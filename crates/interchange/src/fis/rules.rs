@@ -192,7 +192,10 @@ fn proposition(
     let name = variable.name.clone();
     let term = variable.terms.get((index as usize).saturating_sub(1));
     let Some(term) = term.map(|term| term.name.clone()) else {
-        let help = format!("it has {} terms", variable.terms.len());
+        let help = match variable.terms.len() {
+            1 => "write `1`, the number of its only term, or `0` for no condition".into(),
+            count => format!("write a number from 1 to {count}, or `0` for no condition"),
+        };
         let number = match index < 1e15 {
             true => index.to_string(),
             false => format!("{index:e}"),

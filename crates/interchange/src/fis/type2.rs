@@ -109,7 +109,7 @@ pub(super) fn settings(draft: &mut ModelDraft<'_>, written: Option<&str>, and: O
             .is_some_and(|it| it.eq_ignore_ascii_case("BMM")) =>
         {
             let message = format!("`{word}` weights both centroids differently");
-            let help = "a rule set has only the mean of both: `BMM(0.5,0.5)`";
+            let help = "write `BMM(0.5,0.5)`: a rule set supports only the mean of both centroids";
             draft.loss("type-reduction", written, message, help);
             TypeReduction::BegianMelekMendel
         }
@@ -127,7 +127,8 @@ pub(super) fn settings(draft: &mut ModelDraft<'_>, written: Option<&str>, and: O
     };
     if method == TypeReduction::WuMendel {
         let message = "the method `WM` of the toolbox is not that of Wu and Mendel".into();
-        draft.loss("type-reduction", written, message, WU_MENDEL);
+        let help = format!("choose another method, such as `KM`: {WU_MENDEL}");
+        draft.loss("type-reduction", written, message, &help);
     }
     // A file whose pairs are all equal has no type-2 terms, and therefore no type reduction.
     if draft.model.has_type2_terms() {
@@ -144,7 +145,8 @@ pub(super) fn check_rule(draft: &mut ModelDraft<'_>, line: &str) {
         return;
     };
     let message = format!("the rule {what}");
-    let help = "the IT2-FLS toolbox evaluates such rules differently";
+    let help =
+        "write the rule without it, or keep the rule set in YAML, where it has its usual meaning";
     draft.loss("rule", line, message, help);
 }
 

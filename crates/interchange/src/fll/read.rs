@@ -36,6 +36,9 @@ struct Entry<'t> {
     value: &'t str,
 }
 
+/// The keywords of the sections.
+const SECTIONS: [&str; 4] = ["Engine", "InputVariable", "OutputVariable", "RuleBlock"];
+
 impl SectionKind {
     fn of(word: &str) -> Option<SectionKind> {
         Some(match word {
@@ -125,6 +128,9 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
     blocks(&mut draft, &of(SectionKind::Rules).collect::<Vec<_>>());
     aggregate(&mut draft, &of(SectionKind::Output).collect::<Vec<_>>());
     output_conditions::replace(&mut draft);
+    draft.require_output(
+        "add a section `OutputVariable`, or copy the whole file again if it is cut off",
+    );
     draft.finish()
 }
 
@@ -178,16 +184,37 @@ fn sections<'t>(draft: &mut ModelDraft<'t>) -> Vec<Section<'t>> {
             draft.error("fll-syntax", key, message, help);
             continue;
         };
-        if section.kind.keys().contains(&key) {
+        let keys = section.kind.keys();
+        if keys.contains(&key) {
             section.entries.push(Entry { key, value });
+            continue;
+        }
+        let message = format!("unknown key `{key}`");
+        // A misspelt key is read as the one that is meant, so that the latter is not reported as missing as well.
+        if let Some(near) = nearest(key, keys.iter().copied()) {
+            draft.error(
+                "unknown-key",
+                key,
+                message,
+                &format!("did you mean `{near}`?"),
+            );
+            section.entries.push(Entry { key: near, value });
+        } else if let Some(near) = nearest(key, SECTIONS)
+            && let Some(kind) = SectionKind::of(near)
+        {
+            draft.error(
+                "unknown-key",
+                key,
+                message,
+                &format!("did you mean `{near}`?"),
+            );
+            sections.push(Section {
+                kind,
+                name: value,
+                entries: vec![],
+            });
         } else {
-            let known = section.kind.keys().iter().copied();
-            let help = match nearest(key, known) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => "it is left out".into(),
-            };
-            let message = format!("unknown key `{key}`");
-            draft.warning("unknown-key", key, message, &help);
+            draft.warning("unknown-key", key, message, "it is left out");
         }
     }
     sections

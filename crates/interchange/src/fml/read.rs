@@ -43,13 +43,19 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
                 .lines()
                 .nth(at.row.saturating_sub(1) as usize)
                 .unwrap_or_default();
-            let (message, help) = xml_mistake(&error);
+            let column = at.col.saturating_sub(1) as usize;
+            let start = line
+                .char_indices()
+                .nth(column)
+                .map_or(0, |(start, _)| start);
+            let (before, rest) = line.split_at_checked(start).unwrap_or(("", line));
+            let (message, help) = xml_mistake(&error, (before, rest));
             // The error for a text that ends too early has no position.
             let part = match error {
                 roxmltree::Error::UnclosedRootNode => {
                     text.trim_end().lines().last().unwrap_or(line)
                 }
-                _ => line,
+                _ => rest.split_whitespace().next().unwrap_or(line),
             };
             draft.error("xml-syntax", part.trim(), message, &help);
             return draft.finish();
@@ -73,11 +79,13 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
     }
     blocks::aggregate(&mut reader.draft.model, &reader.aggregations);
     blocks::set_blocks(&mut reader.draft.model, reader.blocks);
+    let help = "add a `fuzzyVariable` with `type=\"output\"` to the `knowledgeBase`";
+    reader.draft.require_output(help);
     reader.draft.finish()
 }
 
-/// The message and the help for text that is not XML.
-fn xml_mistake(error: &roxmltree::Error) -> (String, String) {
+/// The message and the help for text that is not XML; `line` is the line before and after the position of the error.
+fn xml_mistake(error: &roxmltree::Error, line: (&str, &str)) -> (String, String) {
     use roxmltree::Error;
     match error {
         Error::UnexpectedCloseTag(expected, found, _) => (
@@ -92,10 +100,17 @@ fn xml_mistake(error: &roxmltree::Error) -> (String, String) {
             "`&` does not begin a reference here".into(),
             "write `&amp;` for the sign `&`".into(),
         ),
-        Error::InvalidChar2("a quote", ..) | Error::InvalidAttributeValue(_) => (
-            "the value of an attribute is not in quotes".into(),
-            "write `name=\"value\"`".into(),
-        ),
+        Error::InvalidChar2("a quote", ..) | Error::InvalidAttributeValue(_) => {
+            ("the value of an attribute is not in quotes".into(), {
+                let name = line
+                    .0
+                    .trim_end_matches(['=', ' '])
+                    .split_whitespace()
+                    .next_back();
+                let value = line.1.split([' ', '>', '/']).next().unwrap_or("value");
+                format!("write `{}=\"{value}\"`", name.unwrap_or("name"))
+            })
+        }
         other => (
             format!("this is not valid XML: {other}"),
             "correct the XML at this line".into(),
@@ -154,7 +169,7 @@ fn too_large(text: &str) -> Option<(&str, String, &'static str)> {
             )
         } else if depth >= DEEPEST_ELEMENTS {
             (
-                format!("elements are nested deeper than {DEEPEST_ELEMENTS}"),
+                format!("elements are nested more than {DEEPEST_ELEMENTS} levels deep"),
                 "elements of FML are nested about six deep",
             )
         } else {

@@ -102,7 +102,11 @@ fn words_name_the_motor_and_its_direction() {
     imbalance.found.motor = motor(2, None, Side::Lower);
     let words = imbalance.words(&estimator);
     assert_eq!(words.brief, ["imbalance 16 %", ", motor 2"]);
-    assert!(words.text.contains("motor 2, below its"), "{}", words.text);
+    assert!(
+        words.text.contains("motor 2, whose share is now below its"),
+        "{}",
+        words.text
+    );
 }
 
 #[test]

@@ -244,6 +244,7 @@ fn input(
             return None;
         }
     }
+    let before = found.len();
     let if_missing = fields
         .get("if_missing")
         .and_then(|node| node.finite("`if_missing`", found));
@@ -252,6 +253,7 @@ fn input(
     {
         let message = "`if_missing` is for signals that a vehicle may lack, and the motor commands are not such a signal";
         let help = "remove it: without the commands of the motors the risk is unknown";
+        found.truncate(before);
         found.push(Diagnostic::error("if-missing", entry.key_span.clone(), message).help(help));
     }
     let needs_one = statistic.uses_bins() || statistic.uses_slots();

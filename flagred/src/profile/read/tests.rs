@@ -416,13 +416,13 @@ reliability:
 fn a_file_that_is_not_a_profile_is_refused() {
     for (text, expected) in [
         ("", "the file is empty"),
-        ("[1, 2]", "expected a mapping"),
+        ("[1, 2]", "expected a profile, found a list"),
         ("name: x", "the profile has no `flagred`"),
         (
             "flagred: 2\nname: x\nrules: y\ninputs: {a: {last: b}}",
             "version 1 only",
         ),
-        ("flagred: 1\nname: [", "invalid YAML"),
+        ("flagred: 1\nname: [", "the bracket `[` is never closed"),
     ] {
         let message = text.parse::<Profile>().unwrap_err().to_string();
         assert!(message.contains(expected), "{text:?}: {message}");

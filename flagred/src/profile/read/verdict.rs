@@ -133,7 +133,7 @@ fn threshold(fields: &Fields, what: &str, found: &mut Mistakes) -> Threshold {
         }
         let is_word = value.is_none() && percent.is_none();
         if let Some(finding) = found.get_mut(before).filter(|_| is_word)
-            && finding.help.as_deref() == Some("write a number such as `0.5`")
+            && finding.help.as_deref() == Some("write a number")
         {
             finding.help = Some(format!("write the risk in percent, such as `{key}: 60`"));
         }

@@ -2,8 +2,32 @@
 
 use alloc::{format, string::String};
 
-use super::words::found_here;
-use crate::{rule::is_plain_name, tree::share_of_percentage};
+use super::{
+    KnownNames,
+    words::{found_here, last_input},
+};
+use crate::{diagnostic::listed, rule::is_plain_name, tree::share_of_percentage};
+
+/// Returns a suggestion for `NOT` or `any` after `THEN`; `before` ends with `THEN output IS`.
+pub(super) fn terms_of_conclusion(before: &str, known: KnownNames<'_>) -> String {
+    let output = last_input(before).and_then(|name| known.variable(name));
+    match output {
+        Some(output) => format!(
+            "write one term of `{}`: there are {}",
+            output.name,
+            listed(&output.terms)
+        ),
+        None => "write one term of the output, such as `IS low` or `IS very low`".into(),
+    }
+}
+
+/// Returns the text of the condition, and the text after `THEN`.
+fn parts(before: &str) -> Option<(&str, &str)> {
+    let folded = before.to_ascii_lowercase();
+    let then = folded.find(" then ")?;
+    let condition = before.get(..then)?.trim().get(2..)?.trim();
+    Some((condition, before.get(then + 6..)?.trim()))
+}
 
 /// Returns a suggestion for a weight such as `50%` or `weight 0.5`.
 pub(super) fn weight_advice(rest: &str) -> String {
@@ -49,23 +73,46 @@ pub(super) fn after_conclusion(before: &str, rest: &str, weighted: bool) -> Opti
         ));
     }
     let is = |word: &str| found.eq_ignore_ascii_case(word);
+    let behind = rest.get(found.len()..).unwrap_or("").trim();
     if is("else") {
-        return Some("there is no `ELSE`: write a second rule with `NOT`".into());
+        return Some(match parts(before) {
+            Some((condition, _)) => {
+                format!(
+                    "there is no `ELSE`: write a second rule, `IF NOT ({condition}) THEN {behind}`"
+                )
+            }
+            None => "there is no `ELSE`: write a second rule with `NOT`".into(),
+        });
+    }
+    if found == "-"
+        && behind
+            .get(..2)
+            .is_some_and(|word| word.eq_ignore_ascii_case("if"))
+    {
+        return Some("this `-` starts a new rule: align it with the `-` of the rules above".into());
     }
     if is("or") {
-        return Some("conclusions are joined by `AND`; for `OR` write two rules".into());
+        return Some("conclusions are joined by `AND`; instead of `OR`, write two rules".into());
     }
-    if is("if") {
-        return Some("begin the next rule on a line of its own: `- IF ...`".into());
-    }
-    if is("when") {
-        return Some("a rule has one `IF`: join conditions by `AND` before `THEN`".into());
+    if is("if") || is("when") {
+        let is_rule = behind.to_ascii_lowercase().contains(" then ");
+        return Some(match parts(before).filter(|_| !is_rule) {
+            Some((condition, conclusion)) => {
+                format!(
+                    "write all conditions before `THEN`: `IF {condition} AND {behind} THEN {conclusion}`"
+                )
+            }
+            None => "begin the next rule on a line of its own: `- IF ...`".into(),
+        });
     }
     if is("then") {
         return Some("join conclusions by `AND`, or write a second rule".into());
     }
     if is("unless") || is("except") {
-        return Some("there is no `UNLESS`: write `AND NOT (condition)` before `THEN`".into());
+        return Some(format!(
+            "there is no `{}`: write `AND NOT ({behind})` before `THEN`",
+            found.to_ascii_uppercase()
+        ));
     }
     if ["weight", "weighted", "weights", "confidence", "cf"]
         .iter()
@@ -85,15 +132,18 @@ pub(super) fn after_conclusion(before: &str, rest: &str, weighted: bool) -> Opti
         return Some(format!("write a decimal point: `WITH {whole}.{number}`"));
     }
     match found {
-        "," => Some("join conclusions by `AND`".into()),
-        ";" => Some("remove it; each rule is an item of the list `rules`".into()),
+        "," => Some("write `AND` in place of the comma".into()),
+        ";" => Some("remove the semicolon".into()),
         "(" | "[" if number.parse::<f64>().is_ok() => {
             Some(format!("write a weight after `WITH`: `WITH {number}`"))
         }
         "(" | "%" | "[" => Some("write a weight after `WITH`: `WITH 0.8`".into()),
-        _ if weighted => Some("a weight is the end of its rule; remove everything after it".into()),
+        _ if weighted => Some("remove everything after the weight".into()),
         _ if is_plain_name(found) => {
-            Some("put a name of several words in quotes: `\"very low\"`".into())
+            let last = before.split_whitespace().next_back().unwrap_or("");
+            Some(format!(
+                "put a name of several words in quotes: `\"{last} {found}\"`"
+            ))
         }
         _ => None,
     }

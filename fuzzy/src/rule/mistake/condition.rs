@@ -1,27 +1,32 @@
 //! Suggestions for conditions: two words after `IS`, a missing `IS`, phrases of natural language.
 
-use alloc::{borrow::ToOwned, format, string::String, vec::Vec};
+use alloc::{format, string::String, vec::Vec};
 
 use super::{
-    CONNECTIVES, Owner,
-    words::{found_here, last_input, sign},
+    CONNECTIVES, KnownNames,
+    comparison::{between, compared, not_a_number, side_of_sign, side_of_words},
+    words::{found_here, last_input, one_of, sign},
 };
 use crate::{
     diagnostic::{Diagnostic, likely_candidates, nearest, suggest},
+    formula::Formula,
     rule::{Hedge, Rule, is_plain_name, parse::keyword},
 };
 
 /// Returns the diagnostic for two consecutive words such as `vrey hot`: the first word is a misspelt hedge, or both are
-/// one name.
-pub(super) fn two_words(span: core::ops::Range<usize>, first: &str, second: &str) -> Diagnostic {
-    if let Some(help) = phrase(first, second) {
+/// one name. `rest` begins with the two words.
+pub(super) fn two_words(
+    span: core::ops::Range<usize>,
+    (first, second): (&str, &str),
+    (before, rest): (&str, &str),
+    known: KnownNames<'_>,
+) -> Diagnostic {
+    let input = last_input(before).unwrap_or("input");
+    let is_number = second.parse::<f64>().is_ok();
+    let phrase = phrase(input, rest, known);
+    if let Some(help) = phrase.or_else(|| is_number.then(|| not_a_number(input))) {
         let message = format!("expected a term after `IS`, found `{first} {second}`");
         return Diagnostic::error("rule-syntax", span, message).help(help);
-    }
-    if second.parse::<f64>().is_ok() {
-        let message = format!("expected a term after `IS`, found `{first} {second}`");
-        return Diagnostic::error("rule-syntax", span, message)
-            .help("a condition names a term of the input; give the input a term for these values");
     }
     let hedges: Vec<&str> = Hedge::ALL.iter().map(|hedge| hedge.word()).collect();
     let message = format!("there is no hedge `{first}`");
@@ -32,33 +37,39 @@ pub(super) fn two_words(span: core::ops::Range<usize>, first: &str, second: &str
     Diagnostic::error("rule-syntax", span, message).help(help)
 }
 
-/// Returns whether there is a suggestion for these two words of natural language.
-pub(super) fn is_phrase(first: &str, second: &str) -> bool {
-    phrase(first, second).is_some()
+/// Returns a suggestion for words of natural language after `IS`, such as `EITHER cold OR hot` or `at least mild`.
+fn phrase(input: &str, rest: &str, known: KnownNames<'_>) -> Option<String> {
+    let words: Vec<&str> = rest.split_whitespace().collect();
+    let is = |word: &str, known: &str| word.eq_ignore_ascii_case(known);
+    let ends = |word: &str| is(word, "THEN") || word.ends_with(')');
+    let phrase = words.iter().take_while(|word| !ends(word));
+    let phrase: Vec<&str> = phrase.copied().collect();
+    match phrase.as_slice() {
+        [first, a, or, b] if is(first, "EITHER") && is(or, "OR") => {
+            Some(format!("write `({input} IS {a} OR {input} IS {b})`"))
+        }
+        [first, a, nor, b] if is(first, "NEITHER") && (is(nor, "NOR") || is(nor, "OR")) => {
+            Some(format!("write `{input} IS NOT {a} AND {input} IS NOT {b}`"))
+        }
+        [first, low, and, high, ..] if is(first, "BETWEEN") && is(and, "AND") => {
+            Some(between(input, low, high, known))
+        }
+        _ => {
+            let (side, term) = side_of_words(&phrase)?;
+            Some(compared(input, side, term, known))
+        }
+    }
 }
 
-/// Returns a suggestion for two words of natural language after `IS`, such as `hot UNLESS` or `below 20`.
-fn phrase(first: &str, second: &str) -> Option<String> {
-    let is = |word: &str, known: &[&str]| known.iter().any(|one| word.eq_ignore_ascii_case(one));
-    if is(second, &["UNLESS", "EXCEPT"]) {
-        Some(format!("write `AND NOT` in place of `{second}`"))
-    } else if is(second, &["BUT", "PLUS", "WHILE"]) {
-        Some(format!("write `AND` in place of `{second}`"))
-    } else if is(first, &["EITHER"]) {
-        Some("write `(x IS a OR x IS b)` with the input x".to_owned())
-    } else if is(first, &["NEITHER"]) {
-        Some("write `x IS NOT a AND x IS NOT b` with the input x".to_owned())
-    } else if is(
-        first,
-        &[
-            "between", "below", "above", "under", "over", "at", "less", "more",
-        ],
-    ) || is(first, &["greater", "smaller", "higher", "lower"])
-    {
-        Some("a condition names a term: join the intended terms, `(x IS a OR x IS b)`, or give the input a term for these values".to_owned())
-    } else {
-        None
-    }
+/// Returns a suggestion for `temperature IS more than mild`; `rest` begins with `than`.
+pub(super) fn than(before: &str, rest: &str, known: KnownNames<'_>) -> Option<String> {
+    let input = last_input(before)?;
+    let more = before.split_whitespace().next_back()?;
+    let words: Vec<&str> = core::iter::once(more)
+        .chain(rest.split_whitespace())
+        .collect();
+    let (side, term) = side_of_words(&words)?;
+    Some(compared(input, side, term, known))
 }
 
 /// Returns a suggestion if `IS` is missing after the name of an input or an output; `before` is the text before the
@@ -68,8 +79,9 @@ pub(super) fn is_missing(
     name: &str,
     rest: &str,
     before: &str,
-    owner: Owner<'_>,
+    known: KnownNames<'_>,
 ) -> Option<String> {
+    let owner = |kind: &str, term: &str| known.owner(kind, term);
     let found = found_here(rest);
     // For example `IF "temperature IS cold" THEN`, and `IF temperature.cold THEN`.
     if name.starts_with(['"', '\'']) && name.to_ascii_lowercase().contains(" is ") {
@@ -78,14 +90,14 @@ pub(super) fn is_missing(
     let parts = name.match_indices(['.', '_']).find_map(|(at, _)| {
         let (of, term) = (name.get(..at)?, name.get(at + 1..)?);
         let term = term.trim_start_matches("is_");
-        (owner(kind, term).as_deref() == Some(of)).then_some((of, term))
+        (owner(kind, term) == Some(of)).then_some((of, term))
     });
     if let Some((of, term)) = parts {
         return Some(format!("write `{of} IS {term}`"));
     }
     // For example `IF (temperature, cold) THEN`, and `IF temperature(cold) THEN`.
     let next = found_here(rest.trim_start_matches([',', '(', '[', '"', '\'', ' ']));
-    if found.starts_with([',', '(', '[']) && owner(kind, next).as_deref() == Some(name) {
+    if found.starts_with([',', '(', '[']) && owner(kind, next) == Some(name) {
         return Some(format!("write `{name} IS {next}`"));
     }
     if found == "," && kind == "input" {
@@ -103,14 +115,25 @@ pub(super) fn is_missing(
             .iter()
             .any(|word| name.eq_ignore_ascii_case(word))
         {
-            return Some("for a rule that always fires write `input IS any`".into());
+            let input = known.inputs.first().map_or("input", |input| input.name);
+            return Some(format!(
+                "for a rule that always fires write `{input} IS any`"
+            ));
+        }
+        if let Some(variable) = known.variable(name) {
+            return Some(format!(
+                "write `{name} IS` and a term: {}",
+                one_of(&variable.terms)
+            ));
         }
         // In `x IS low OR high`, the name is a term of the input in the previous condition, or of another input.
         let connective = before.split_whitespace().next_back().unwrap_or("");
         let of = owner(kind, name);
         return Some(match last_input(before) {
-            _ if kind == "output" && of.is_some() => {
-                format!("write `{} IS {name}`", of.unwrap_or_default())
+            _ if kind == "output"
+                && let Some(of) = of =>
+            {
+                format!("write `{of} IS {name}`")
             }
             Some(_) if kind == "output" => {
                 String::from("write an output and one term in each conclusion: `output IS term`")
@@ -140,47 +163,56 @@ pub(super) fn is_missing(
         return Some(help);
     }
     if name.eq_ignore_ascii_case("ELSE") {
-        return Some("there is no `ELSE`: remove it, or write a second rule".into());
+        return Some("remove `ELSE`".into());
     }
-    if found.starts_with(['<', '>', '≤', '≥'])
-        && let next = found_here(rest.get(found.len()..).unwrap_or("").trim_start())
+    let behind = rest.get(found.len()..).unwrap_or("").trim_start();
+    let next = found_here(behind);
+    if let Some(side) = side_of_sign(found) {
+        return Some(compared(name, side, next, known));
+    }
+    // For example `x BETWEEN cold AND mild`.
+    if is("BETWEEN") {
+        let words: Vec<&str> = behind.split_whitespace().collect();
+        return Some(match words.as_slice() {
+            [low, and, high, ..] if and.eq_ignore_ascii_case("AND") => {
+                between(name, low, high, known)
+            }
+            _ => not_a_number(name),
+        });
+    }
+    // For example `temperature - humidity IS hot`.
+    if found.starts_with(['-', '+', '*', '/'])
         && is_plain_name(next)
         && next.parse::<f64>().is_err()
     {
         return Some(format!(
-            "a condition names a term: write `{name} IS {next}`"
+            "a condition names one input: define an additional input for `{name} {found} {next}`, with its own range and terms, and use it here"
         ));
     }
-    // For example `x BETWEEN cold AND mild`.
-    if is("BETWEEN")
-        && let [_, low, connective, high, ..] =
-            rest.split_whitespace().collect::<Vec<&str>>().as_slice()
-        && connective.eq_ignore_ascii_case("AND")
-        && [low, high]
-            .iter()
-            .all(|word| is_plain_name(word) && word.parse::<f64>().is_err())
-    {
-        return Some(format!("write `({name} IS {low} OR {name} IS {high})`"));
-    }
-    if found.starts_with(['<', '>', '≤', '≥', '-', '+', '*', '/']) || is("BETWEEN") {
-        return Some(format!(
-            "a condition names a term, not a number: give `{name}` a term for these values and write `{name} IS term`"
-        ));
+    if found.starts_with(['-', '+', '*', '/']) {
+        return Some(not_a_number(name));
     }
     if found.starts_with('[') {
         return Some(format!("write `{name} IS term`"));
     }
-    if found.starts_with('=')
-        && let Some(value) = rest.trim_start_matches('=').split_whitespace().next()
-        && value.parse::<f64>().is_ok()
-    {
-        let shape = match kind {
-            "output" => "constant",
-            _ => "singleton",
-        };
-        return Some(format!(
-            "write `IS` and a term; for the number {value} give the {kind} a term, such as `{{{shape}: {value}}}`"
-        ));
+    // For example `fan = 2 * temperature` and `temperature = 30`.
+    if found.starts_with('=') {
+        let value = rest.trim_start_matches('=').trim();
+        let value = value.split(" WITH ").next().unwrap_or(value);
+        let first = value.split_whitespace().next().unwrap_or("");
+        if kind == "input" && first.parse::<f64>().is_ok() {
+            return Some(not_a_number(name));
+        }
+        if kind == "output" && !is_plain_name(value) || first.parse::<f64>().is_ok() {
+            let is_formula = value.parse::<f64>().is_err() && value.parse::<Formula>().is_ok();
+            let term = match is_formula {
+                true => format!("a term with `{{function: {value}}}`"),
+                false => format!("a term for {first}"),
+            };
+            return Some(format!(
+                "a conclusion names a term: give `{name}` {term}, and write `{name} IS` and the name of the term"
+            ));
+        }
     }
     let behind = rest.get(found.len()..).unwrap_or("");
     if Hedge::ALL.iter().any(|hedge| is(hedge.word())) {
@@ -188,7 +220,7 @@ pub(super) fn is_missing(
         return Some(format!("write `{name} IS {found} {next}`"));
     }
     // For example `IF hot temperature THEN`.
-    if owner(kind, name).as_deref() == Some(found) {
+    if owner(kind, name) == Some(found) {
         return Some(format!("write `{found} IS {name}`"));
     }
     if is_plain_name(found) && keyword(behind, "IS").is_none() {
@@ -205,7 +237,13 @@ pub(super) fn is_missing(
         let is_verb = is_plain_name(next) && !Rule::is_keyword(next);
         return Some(match nearest(found, ["IS"]) {
             Some(word) => format!("did you mean `{word}`?"),
-            None if name.eq_ignore_ascii_case("SET") => format!("write `{found} IS` and a term"),
+            None if name.eq_ignore_ascii_case("SET") => {
+                let term = behind_next.split_whitespace().next();
+                match term.filter(|_| next.eq_ignore_ascii_case("TO")) {
+                    Some(term) => format!("write `{found} IS {term}`"),
+                    None => format!("write `{found} IS` and a term"),
+                }
+            }
             None if is_verb => format!("write `{name} IS {next}`"),
             None => format!("write `{name} IS {found}`"),
         });
@@ -256,15 +294,12 @@ pub(super) fn phrase_after_name(name: &str, rest: &str, before: &str) -> Option<
         ));
     }
     if found.eq_ignore_ascii_case("IN") {
-        let list = behind.strip_prefix(['(', '[', '{'])?;
-        let terms = list
-            .split([')', ']', '}'])
-            .next()?
-            .split(',')
-            .map(str::trim);
-        let terms = terms.filter(|term| is_plain_name(term));
-        let parts: Vec<String> = terms.map(|term| format!("{name} IS {term}")).collect();
-        return (!parts.is_empty()).then(|| format!("write `({})`", parts.join(" OR ")));
+        return in_list(name, behind, false);
+    }
+    if found.eq_ignore_ascii_case("NOT")
+        && let Some(list) = keyword(behind, "IN")
+    {
+        return in_list(name, list, true);
     }
     if found.eq_ignore_ascii_case("NOT")
         && let Some(behind) = keyword(behind, "IS")
@@ -279,5 +314,21 @@ pub(super) fn phrase_after_name(name: &str, rest: &str, before: &str) -> Option<
         && words
             .next()
             .is_some_and(|word| word.eq_ignore_ascii_case("more"));
-    (is_more_or && name.eq_ignore_ascii_case("less")).then(|| format!("write `somewhat {found}`"))
+    let input = last_input(before).unwrap_or("input");
+    (is_more_or && name.eq_ignore_ascii_case("less"))
+        .then(|| format!("write `{input} IS somewhat {found}`"))
+}
+
+/// Returns a suggestion for `temperature IN (mild, hot)`; `list` begins with the bracket.
+pub(super) fn in_list(input: &str, list: &str, negated: bool) -> Option<String> {
+    let list = list.trim_start().strip_prefix(['(', '[', '{'])?;
+    let terms = list
+        .split([')', ']', '}'])
+        .next()?
+        .split(',')
+        .map(str::trim);
+    let terms = terms.filter(|term| is_plain_name(term));
+    let parts: Vec<String> = terms.map(|term| format!("{input} IS {term}")).collect();
+    let not = if negated { "NOT " } else { "" };
+    (!parts.is_empty()).then(|| format!("write `{not}({})`", parts.join(" OR ")))
 }

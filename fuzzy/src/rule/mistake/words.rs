@@ -2,33 +2,96 @@
 
 use alloc::{format, string::String, vec::Vec};
 
-use super::CONNECTIVES;
+use super::{CONNECTIVES, KnownNames, comparison::not_a_number, condition::in_list};
 use crate::{
-    diagnostic::is_curly_quote,
+    diagnostic::{is_curly_quote, listed},
     rule::{
         Hedge, Rule, is_plain_name,
         parse::{is_name_letter, keyword, quoted, word},
     },
 };
 
+/// Returns a name as it is written in a rule.
+pub(super) fn quoted_name(name: &str) -> String {
+    match is_plain_name(name) {
+        true => name.into(),
+        false => format!("\"{name}\""),
+    }
+}
+
+/// Returns the first names of a list, for a choice of one: `` `dry` or `humid` ``.
+pub(super) fn one_of(names: &[&str]) -> String {
+    const MOST: usize = 6;
+    match names.get(..MOST) {
+        Some(first) => format!("{} ...", listed(first)),
+        None => crate::diagnostic::either(names),
+    }
+}
+
+/// Returns the connective for a word of natural language between two conditions.
+pub(super) fn joining(word: &str) -> Option<&'static str> {
+    let is = |known: &[&str]| known.iter().any(|one| word.eq_ignore_ascii_case(one));
+    if is(&["UNLESS", "EXCEPT"]) {
+        Some("AND NOT")
+    } else if is(&["BUT", "PLUS", "WHILE"]) {
+        Some("AND")
+    } else {
+        None
+    }
+}
+
+/// Returns a suggestion for a hedge before an input, such as `very water IS hot`.
+pub(super) fn before_input(rest: &str) -> String {
+    let words: Vec<&str> = rest.split_whitespace().collect();
+    match words.as_slice() {
+        [hedge, input, is, term, ..] if is.eq_ignore_ascii_case("IS") => {
+            let term = term.trim_end_matches(')');
+            format!("write the hedge before the term: `{input} IS {hedge} {term}`")
+        }
+        _ => "write the hedge before the term: `input IS very term`".into(),
+    }
+}
+
 /// Returns a suggestion if a name was expected, but there is a keyword or the end of the rule.
-pub(super) fn name_is_missing(what: &str, rest: &str, before: &str) -> Option<String> {
+pub(super) fn name_is_missing(
+    what: &str,
+    rest: &str,
+    before: &str,
+    known: KnownNames<'_>,
+) -> Option<String> {
     let found = found_here(rest);
     let is = |word: &str| found.eq_ignore_ascii_case(word);
     let input = what.contains("input");
+    let last = before.split_whitespace().next_back().unwrap_or("");
     if input && found.starts_with('/') {
-        return Some("write `AND` or `OR`".into());
+        return Some("write only `AND` or only `OR`".into());
     }
     if input && is("IS") {
-        return Some("name the input again: `AND input IS term`".into());
+        let term = rest.split_whitespace().nth(1).unwrap_or("term");
+        let name = last_input(before).unwrap_or("input");
+        return Some(format!("name the input again: `{last} {name} IS {term}`"));
     }
     if input && is("IF") {
-        return Some("write `IF` once".into());
+        return Some("remove the second `IF`".into());
     }
     if input && (is("THEN") || is("AND") || is("OR")) {
-        return Some(
-            "add a condition before it, `input IS term`, or remove the word before it".into(),
-        );
+        return Some(match last.eq_ignore_ascii_case("IF") {
+            true => format!("add a condition after `{last}`: `input IS term`"),
+            false => format!("add a condition after `{last}`, or remove `{last}`"),
+        });
+    }
+    // For example `humidity IS not THEN`, with a term `not`.
+    let variable = last_input(before).and_then(|name| known.variable(name));
+    let terms = variable
+        .map(|variable| variable.terms.as_slice())
+        .unwrap_or_default();
+    let is_term = |word: &str| {
+        Rule::is_keyword(word) && terms.iter().any(|term| term.eq_ignore_ascii_case(word))
+    };
+    if let Some(word) = [last, found].into_iter().find(|word| is_term(word)) {
+        return Some(format!(
+            "`{word}` is a word of the rule language: write the term in quotes, `IS \"{word}\"`"
+        ));
     }
     if found.is_empty() {
         return Some(match what {
@@ -41,7 +104,17 @@ pub(super) fn name_is_missing(what: &str, rest: &str, before: &str) -> Option<St
         return Some("a rule has one `IF`: join the conditions by `AND` before `THEN`".into());
     }
     if what == "the name of an output" && found == "(" {
-        return Some("write the conclusion without brackets, and a weight as `WITH 0.5`".into());
+        let (inside, behind) = rest.split_once(')').unwrap_or((rest, ""));
+        let inside = inside.trim_start_matches(['(', ' ']);
+        let weight = behind.trim().trim_matches(['(', ')', '[', ']']);
+        let weight = weight
+            .parse::<f64>()
+            .ok()
+            .map(|weight| format!(" WITH {weight}"));
+        return Some(format!(
+            "write the conclusion without brackets: `THEN {inside}{}`",
+            weight.unwrap_or_default()
+        ));
     }
     if !input && is("IS") {
         return Some("remove the second `IS`".into());
@@ -52,7 +125,11 @@ pub(super) fn name_is_missing(what: &str, rest: &str, before: &str) -> Option<St
         return Some(help);
     }
     if what.contains("term") && found == "(" {
-        return Some("write the term without brackets: `IS very low`".into());
+        let inside = rest.trim_start_matches('(').split(')').next().unwrap_or("");
+        return Some(format!(
+            "write the term without brackets: `IS {}`",
+            inside.trim()
+        ));
     }
     if what == "the name of an output" && is(":") {
         return Some("remove the colon".into());
@@ -65,18 +142,32 @@ pub(super) fn name_is_missing(what: &str, rest: &str, before: &str) -> Option<St
     }
     Rule::is_keyword(found).then(|| {
         format!(
-            "`{found}` is a word of the rule language; put it in quotes as a name: `\"{found}\"`"
+            "`{found}` is a word of the rule language: write a name in its place, or put it in quotes if it is a name: `\"{found}\"`"
         )
     })
 }
 
-/// Returns a suggestion for `x IS (low OR high)` and `x IS NOT (low OR high)`.
+/// Returns a suggestion for `x IS (low OR high)`, `x IS NOT (low OR high)` and `x IS very (low OR high)`.
 fn terms_in_brackets(rest: &str, before: &str) -> Option<String> {
     let (inside, _) = rest.strip_prefix('(')?.split_once(')')?;
     let words: Vec<&str> = inside.split_whitespace().collect();
     let input = last_input(before)?;
+    let last = before.split_whitespace().rev();
+    let hedges = last.take_while(|word| !word.eq_ignore_ascii_case("IS"));
+    let mut hedges: Vec<&str> = hedges.collect();
+    let is_negated = hedges
+        .last()
+        .is_some_and(|word| word.eq_ignore_ascii_case("NOT"));
+    if is_negated {
+        hedges.pop();
+    }
+    hedges.reverse();
+    let hedged = hedges
+        .iter()
+        .fold(String::new(), |all, hedge| all + hedge + " ");
     let part = |(i, word): (usize, &&str)| match i % 2 {
-        0 => (is_plain_name(word) && !Rule::is_keyword(word)).then(|| format!("{input} IS {word}")),
+        0 => (is_plain_name(word) && !Rule::is_keyword(word))
+            .then(|| format!("{input} IS {hedged}{word}")),
         _ => {
             let connective = word.to_ascii_uppercase();
             ["AND", "OR"]
@@ -86,12 +177,8 @@ fn terms_in_brackets(rest: &str, before: &str) -> Option<String> {
     };
     let parts: Vec<String> = words.iter().enumerate().map(part).collect::<Option<_>>()?;
     let joined = (parts.len() >= 3 && parts.len() % 2 == 1).then(|| parts.join(" "))?;
-    let last = before.split_whitespace().next_back()?;
-    match last {
-        _ if last.eq_ignore_ascii_case("IS") => Some(format!("write `({joined})`")),
-        _ if last.eq_ignore_ascii_case("NOT") => Some(format!("write `NOT ({joined})`")),
-        _ => None,
-    }
+    let not = if is_negated { "NOT " } else { "" };
+    Some(format!("write `{not}({joined})`"))
 }
 
 /// Returns a suggestion for a rule that does not start with IF.
@@ -109,15 +196,24 @@ pub(super) fn at_start(rest: &str) -> String {
         .split_whitespace()
         .take(4)
         .any(|word| word.eq_ignore_ascii_case("IF"));
+    let mut words = rest.split_whitespace();
     if numbered {
         "begin with `IF`; rules have no names or numbers".into()
+    } else if words
+        .nth(1)
+        .is_some_and(|word| word.eq_ignore_ascii_case("IS"))
+    {
+        match found_here(rest) {
+            found if found.starts_with("IF") => "write a space after `IF`".into(),
+            found => format!("write `IF` before `{found}`"),
+        }
     } else {
-        "a rule reads `IF input IS term THEN output IS term`".into()
+        "write the rule as `IF input IS term THEN output IS term`".into()
     }
 }
 
 /// Returns a suggestion for a condition that is not followed by AND, OR or THEN.
-pub(super) fn connective(before: &str, rest: &str) -> Option<String> {
+pub(super) fn connective(before: &str, rest: &str, known: KnownNames<'_>) -> Option<String> {
     let found = found_here(rest);
     let behind = rest.get(found.len()..).unwrap_or("").trim_start();
     let last = before.split_whitespace().next_back().unwrap_or("");
@@ -136,14 +232,27 @@ pub(super) fn connective(before: &str, rest: &str) -> Option<String> {
             _ => format!("write `AND` or `OR` before `{last}`"),
         });
     }
+    let input = last_input(before).unwrap_or("input");
     if last.parse::<f64>().is_ok() {
-        let help = "a condition names a term of the input, not a number; give the input a term for these values";
-        return Some(help.into());
+        return Some(not_a_number(input));
+    }
+    // For example `temperature IS NOT IN (cold, mild)`.
+    if last.eq_ignore_ascii_case("IN") {
+        let mut words = before.split_whitespace().rev();
+        let is_negated = words
+            .nth(1)
+            .is_some_and(|word| word.eq_ignore_ascii_case("NOT"));
+        return in_list(input, rest, is_negated);
     }
     match found {
-        "," => return Some("write `AND` or `THEN`".into()),
-        ";" => return Some("remove it".into()),
-        ")" => return Some("there is no `(` before it; remove it, or add one".into()),
+        "," if known.is_output(next) => return Some("write `THEN` in place of the comma".into()),
+        "," if known.variable(next).is_some() => {
+            return Some("write `AND` or `OR` in place of the comma".into());
+        }
+        "," if next.eq_ignore_ascii_case("THEN") => return Some("remove the comma".into()),
+        "," => return Some("write `AND` or `THEN` in place of the comma".into()),
+        ";" => return Some("remove the semicolon".into()),
+        ")" => return Some("this `)` has no matching `(`: remove the `)`, or add a `(`".into()),
         "" => return Some("add a conclusion: `THEN output IS term`".into()),
         _ => {}
     }
@@ -151,7 +260,9 @@ pub(super) fn connective(before: &str, rest: &str) -> Option<String> {
         .iter()
         .any(|hedge| hedge.word().eq_ignore_ascii_case(found))
     {
-        return Some("write a hedge before the term: `input IS very low`".into());
+        return Some(format!(
+            "write the hedge before the term: `{input} IS {found} {last}`"
+        ));
     }
     let (behind, _) = word(rest).ok()?;
     let has_then = rest
@@ -179,19 +290,21 @@ pub(super) fn connective(before: &str, rest: &str) -> Option<String> {
 pub(super) fn sign(rest: &str) -> Option<String> {
     let found = found_here(rest);
     let found = found.trim_end_matches(['(', ')']);
-    let text = match found {
-        "&" | "&&" => "write `AND`",
-        "|" | "||" => "write `OR`",
-        "!" | "~" => "write `NOT`",
-        "=" | "==" | ":" | ":=" => "write `IS`",
-        "!=" | "<>" => "write `IS NOT`",
-        "=>" | "->" => "write `THEN`",
-        _ if found.starts_with("//") => "a comment begins with `#`",
-        _ if found.starts_with(is_curly_quote) => "write straight quotes: `\"`",
-        _ if found.starts_with('`') => "write a name without quotes, or in double quotes: `\"`",
+    let word = match found {
+        "&" | "&&" => "AND",
+        "|" | "||" => "OR",
+        "!" | "~" => "NOT",
+        "=" | "==" | ":" | ":=" => "IS",
+        "!=" | "<>" => "IS NOT",
+        "=>" | "->" => "THEN",
+        _ if found.starts_with("//") => return Some("a comment begins with `#`".into()),
+        _ if found.starts_with(is_curly_quote) => {
+            return Some("write straight quotes: `\"`".into());
+        }
+        _ if found.starts_with('`') => return Some("write the name without backticks".into()),
         _ => return None,
     };
-    Some(text.into())
+    Some(format!("write `{word}` in place of `{found}`"))
 }
 
 /// Returns the token at this position as an author would quote it: a word, a quoted name, or an operator.

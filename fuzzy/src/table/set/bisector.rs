@@ -26,8 +26,7 @@ impl SetArrays<'_> {
                 before += area;
                 continue;
             }
-            // The area of the set up to the left end, and up to the right end, of the part of the section that has not
-            // been visited.
+            // The unvisited part of the section has two ends: the area of the set to the left of each of them.
             let (mut left, mut right) = (before, before + area);
             let mut value = None;
             self.parts(section, strengths, |part| {
