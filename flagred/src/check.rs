@@ -139,7 +139,7 @@ pub fn accepted(
     let (mut found, estimator) = examine(&read, rules, signals, &at);
     let outvoted = estimator
         .iter()
-        .flat_map(|one| single_inputs::outvoted(one, &at));
+        .flat_map(|one| single_inputs::outvoted(one, &at, signals));
     found.extend(outvoted);
     AcceptedFindings::remove(&read.allow, &mut found)
 }
@@ -147,7 +147,8 @@ pub fn accepted(
 /// Warns about inputs that do not come from the motors and cannot raise a level by themselves: the other inputs outvote
 /// them, however bad their values are.
 ///
-/// These warnings are for the author of a profile; the warnings of [`profile`] are for everyone who uses it.
+/// These warnings are for the author of a profile; the warnings of [`profile`] are for everyone who uses it. `signals` are
+/// the known signals, as for [`profile`]; an input whose signal is probably misspelt has no warning.
 ///
 /// # Example: a battery as one more vote
 /// ```
@@ -163,16 +164,20 @@ pub fn accepted(
 /// let profile = Source::new(text);
 /// let (fits, estimator) = check::profile(&profile, &Source::new(rules), &[]);
 /// assert!(fits.0.is_empty());
-/// let found = check::outvoted(&profile, &estimator.ok_or("errors")?);
+/// let found = check::outvoted(&profile, &estimator.ok_or("errors")?, &[]);
 /// assert!(found.0[0].message.starts_with("`battery` cannot raise a warning alone"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn outvoted(profile: &fuzzy::Source, estimator: &Estimator) -> Findings {
+pub fn outvoted(
+    profile: &fuzzy::Source,
+    estimator: &Estimator,
+    signals: &[(&str, &str)],
+) -> Findings {
     let Ok(tree) = profile.tree() else {
         return Findings::locate(Vec::new(), profile.text());
     };
     let at = ValuePositions(tree);
-    let mut found = single_inputs::outvoted(estimator, &at);
+    let mut found = single_inputs::outvoted(estimator, &at, signals);
     let (allow, spans) = allowed(&at, |finding| finding == OUTVOTED);
     let accepted = AcceptedFindings::remove(&allow, &mut found);
     found.extend(AcceptedFindings::unneeded(&accepted, &spans));
@@ -500,7 +505,7 @@ fn signal(
 }
 
 /// Returns a signal that is probably misspelt, with the message and the help.
-pub(crate) fn unknown_signal<'i>(
+fn unknown_signal<'i>(
     input: &'i ProfileInput,
     known: &[(&str, &str)],
 ) -> Option<(&'i str, String, String)> {

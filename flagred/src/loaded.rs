@@ -13,21 +13,15 @@ use alloc::{
     vec::Vec,
 };
 
-#[doc(hidden)] // For the programs of this repository.
-pub use fuzzy::yaml::is_meant_as_rules;
 use fuzzy::{
     Findings, Source,
     check::AcceptedFindings,
-    diagnostic::{Diagnostic, nearest},
+    diagnostic::nearest,
     tree::{Node, Value},
+    yaml::{KEYS_OF_RULES, has_key},
 };
 
-use crate::{
-    check,
-    estimator::Estimator,
-    profile::{Profile, ProfileInput},
-    shipped,
-};
+use crate::{check, estimator::Estimator, profile::Profile, shipped};
 
 /// A loaded profile and rule set, compiled and in source form.
 #[derive(Debug, Clone)]
@@ -168,22 +162,13 @@ fn finish<E>(
     })
 }
 
-/// Returns the findings of [`fit`] and [`check::outvoted`], for the author of a profile, and the estimator if the profile
+/// Returns the findings of [`fit`] and [`outvoted`], for the author of a profile, and the estimator if the profile
 /// can be used.
 #[doc(hidden)] // For the programs of this repository.
 pub fn examine(profile: &Source, rules: &Source) -> (Findings, Option<Estimator>) {
     let (mut findings, estimator) = fit(profile, rules);
     if let Some(estimator) = &estimator {
-        let signals = signals();
-        let outvoted = check::outvoted(profile, estimator).0.into_iter();
-        // Whether an input can raise a warning is unknown while its signal is.
-        let is_known = |finding: &Diagnostic| {
-            let mut inputs = estimator.profile().inputs.iter();
-            let name = |input: &ProfileInput| format!("`{}` ", input.name);
-            let input = inputs.find(|input| finding.message.starts_with(&name(input)));
-            input.is_none_or(|input| check::unknown_signal(input, &signals).is_none())
-        };
-        findings.0.extend(outvoted.filter(is_known));
+        findings.0.extend(outvoted(profile, estimator).0);
     }
     (findings, estimator)
 }
@@ -191,6 +176,11 @@ pub fn examine(profile: &Source, rules: &Source) -> (Findings, Option<Estimator>
 /// The findings of [`check::profile`], with the signals that flight logs contain.
 pub fn fit(profile: &Source, rules: &Source) -> (Findings, Option<Estimator>) {
     check::profile(profile, rules, &signals())
+}
+
+/// The findings of [`check::outvoted`], with the signals that flight logs contain.
+pub fn outvoted(profile: &Source, estimator: &Estimator) -> Findings {
+    check::outvoted(profile, estimator, &signals())
 }
 
 /// The findings that the author of a profile accepts: those of [`check::accepted`], with the signals that flight logs contain.
@@ -317,21 +307,21 @@ pub fn rules<E>(
         ))
         .help("name a file in it"));
     }
-    let mut beside = rule_sets_in(folder);
-    beside.retain(|file| {
-        let text = folder.and_then(|folder| read(&folder.join(file)).ok());
-        !text.is_some_and(|text| is_profile(&Source::new(text)))
+    let beside = rule_sets_in(folder).into_iter().map(|file| {
+        let text = folder.and_then(|folder| read(&folder.join(&file)).ok());
+        (file, text.map(Source::new))
     });
+    let beside: Vec<(String, Option<Source>)> = beside
+        .filter(|(_, source)| !source.as_ref().is_some_and(is_profile))
+        .collect();
     let names = shipped::RULE_SETS.iter().map(|known| known.name);
-    let names = names.chain(beside.iter().map(String::as_str));
-    let is_named = |file: &&String| {
-        let text = folder.and_then(|folder| read(&folder.join(file)).ok());
-        let name =
-            text.and_then(|text| Some(Source::new(text).document().ok()?.model.name.clone()));
+    let names = names.chain(beside.iter().map(|(file, _)| file.as_str()));
+    let is_named = |(file, source): &&(String, Option<Source>)| {
+        let document = source.as_ref().and_then(|source| source.document().ok());
         Path::new(file).file_stem() == Some(OsStr::new(&profile.rules))
-            || name.as_ref() == Some(&profile.rules)
+            || document.is_some_and(|document| document.model.name == profile.rules)
     };
-    let meant = beside.iter().find(is_named).map(String::as_str);
+    let meant = beside.iter().find(is_named).map(|(file, _)| file.as_str());
     let help = match meant.or_else(|| nearest(&profile.rules, names)) {
         Some(near) => format!("did you mean `{near}`?"),
         None => format!(
@@ -368,6 +358,13 @@ fn built_in() -> String {
         .iter()
         .map(|known| format!("`{}`", known.name));
     names.collect::<Vec<_>>().join(", ")
+}
+
+/// Whether a line of a text begins with a key that only rule sets and profiles have. Other files are never quoted in
+/// messages: a profile from somebody else may name a file that contains secrets.
+#[doc(hidden)] // For the programs of this repository.
+pub fn is_meant_as_rules(text: &str) -> bool {
+    has_key(text, &["flagred"]) || has_key(text, &KEYS_OF_RULES)
 }
 
 /// Whether a text is meant to be a profile: whether it has the key `flagred` or the settings of a profile, or names its
@@ -416,4 +413,19 @@ fn is_allowed(path: &Path, folder: Option<&Path>) -> bool {
         .flatten()
         .filter_map(|folder| folder.canonicalize().ok())
         .any(|folder| path.starts_with(folder))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_texts_with_a_key_of_a_rule_set_or_a_profile_are_quoted() {
+        for text in ["flagred: 1\nnaem: x", "- \"rules\" : y", "{fuzzy: 1"] {
+            assert!(is_meant_as_rules(text), "{text}");
+        }
+        for text in ["password: x", "# flagred: 1", "rulesets: 1"] {
+            assert!(!is_meant_as_rules(text), "{text}");
+        }
+    }
 }

@@ -39,6 +39,10 @@ const MAX_BLOCKS: usize = 1000;
 /// The maximum number of errors reported for a model; validation stops after that.
 const MAX_FINDINGS: usize = 1000;
 
+/// The suggestion for a variable without terms.
+pub(crate) const TERMS_HELP: &str =
+    "write `partition: [low, medium, high]`, or `terms` with a membership function for each term";
+
 /// Returns the suggestion for missing inputs or outputs; `key` is `inputs` or `outputs`.
 pub(crate) fn missing_help(key: &str) -> String {
     format!(

@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 
 use flagred::{
-    check::{InputRisk, outvoted, risks_of_single_inputs},
+    check::{InputRisk, risks_of_single_inputs},
     estimator::Estimator,
     loaded::{self, is_profile},
     profile::Profile,
@@ -75,7 +75,9 @@ impl Document {
     pub fn findings(&self) -> &Findings {
         self.findings.get_or_init(|| match self.fitted() {
             Some((findings, estimator)) => {
-                let outvoted = estimator.as_ref().map(|e| outvoted(&self.source, e));
+                let outvoted = estimator
+                    .as_ref()
+                    .map(|e| loaded::outvoted(&self.source, e));
                 let outvoted = outvoted.into_iter().flat_map(|findings| findings.0);
                 Findings(findings.0.iter().cloned().chain(outvoted).collect())
             }
@@ -131,7 +133,11 @@ impl OpenProfile {
         match (&self.read, &self.rules) {
             (Err(findings), _) => (findings.clone(), None),
             (Ok(_), Some(rules)) if rules.document().is_ok() => loaded::fit(source, rules),
-            (Ok(profile), _) => (unusable_rules(source.text(), &profile.rules), None),
+            (Ok(profile), _) => {
+                let message = format!("the rule set `{}` cannot be used", profile.rules);
+                let help = "`flagred check` shows why; a rule set must be a shipped one, or a file next to the profile";
+                (unusable_rules(source, message, Some(help.into())), None)
+            }
         }
     }
 }
@@ -183,16 +189,11 @@ pub fn examine<'s>(
     })
 }
 
-/// The finding for a profile whose rule set cannot be used.
-fn unusable_rules(text: &str, rules: &str) -> Findings {
-    let key = text.find("rules:").map_or(0, |at| at + "rules:".len());
-    let place = text
-        .get(key..)
-        .and_then(|rest| rest.find(rules))
-        .map_or(0, |at| key + at);
-    let message = format!("the rule set `{rules}` cannot be used");
-    let finding = Diagnostic::error("rule-set", place..place + rules.len(), message).help(
-        "`flagred check` shows why; a rule set must be a shipped one, or a file next to the profile",
-    );
-    Findings::locate(vec![finding], text)
+/// Returns the finding for a profile whose rule set cannot be used, at the name of the rule set.
+pub fn unusable_rules(profile: &Source, message: String, help: Option<String>) -> Findings {
+    let rules = profile.tree().ok().and_then(|tree| tree.child("rules"));
+    let place = rules.map_or(0..0, |rules| rules.span.clone());
+    let mut finding = Diagnostic::error("rule-set", place, message);
+    finding.help = help;
+    Findings::locate(vec![finding], profile.text())
 }

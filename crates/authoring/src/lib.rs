@@ -41,7 +41,7 @@ pub mod starter;
 pub mod structure;
 pub mod values;
 
-pub use document::{Document, Examination, examine};
+pub use document::{Document, Examination, examine, unusable_rules};
 pub use flagred::loaded::is_profile;
 
 use std::ops::Range;

@@ -7,7 +7,7 @@ use flagred::{
     profile::Profile,
     shipped,
 };
-use fuzzy::{Diagnostic, Findings, Source};
+use fuzzy::Source;
 
 use crate::{
     diagnostics::{read_text, refuse, show},
@@ -46,14 +46,8 @@ pub(crate) fn rule_set(
 ) -> Result<Source, Failure> {
     loaded::rule_set(profile, folder, read_text).map_err(|error| match error {
         LoadError::Unusable { message, help } => {
-            let text = source.text();
-            let tree = source.tree().ok();
-            let place = tree
-                .and_then(|tree| tree.child("rules"))
-                .map(|node| node.span.clone());
-            let mut finding = Diagnostic::error("rule-set", place.unwrap_or(0..0), message);
-            finding.help = help;
-            refuse(&Findings::locate(vec![finding], text), file, text)
+            let findings = flagred_authoring::unusable_rules(source, message, help);
+            refuse(&findings, file, source.text())
         }
         other => failure(other),
     })

@@ -134,9 +134,9 @@ pub(crate) fn fit(
     Ok(())
 }
 
-/// Returns the best steps within limits. It starts from `steps`, the best steps without limits, and sets one step at a
-/// time to the value that minimises the error while the others are fixed, until none changes. The error is convex, so the result
-/// is its minimum.
+/// Returns the best steps within limits. It starts from `steps`, the best steps without limits. It then repeatedly
+/// sets each step to the value that minimises the error for the current values of the other steps, until no step
+/// changes. The error is convex, so the result is its minimum.
 fn within(
     limits: &[(f64, f64)],
     mut steps: DVector<f64>,

@@ -11,7 +11,7 @@ use fuzzy::{
     model::{MembershipFunction, Role, Variable},
 };
 
-use super::{OUTVOTED, ValuePositions, is_above, shown};
+use super::{OUTVOTED, ValuePositions, is_above, shown, unknown_signal};
 use crate::{
     estimator::{Estimator, Memory},
     profile::{Profile, ProfileInput},
@@ -85,10 +85,17 @@ pub fn risks_of_single_inputs(estimator: &Estimator) -> Vec<InputRisk> {
 ///
 /// The inputs from motor commands are symptoms of one cause and rise together, so each of them may be one vote among
 /// many. A problem that another signal measures may not show in the motors at all.
-pub(super) fn outvoted(estimator: &Estimator, at: &ValuePositions) -> Vec<Diagnostic> {
+pub(super) fn outvoted(
+    estimator: &Estimator,
+    at: &ValuePositions,
+    signals: &[(&str, &str)],
+) -> Vec<Diagnostic> {
     let profile = estimator.profile();
     let risks = risks_of_single_inputs(estimator);
-    let is_other = |input: &&ProfileInput| !input.source.signal.is_computed_from_commands();
+    // As long as its signal is unknown, it is also unknown whether an input can raise a warning.
+    let is_other = |input: &&ProfileInput| {
+        !input.source.signal.is_computed_from_commands() && unknown_signal(input, signals).is_none()
+    };
     let others = profile.inputs.iter().filter(is_other);
     let found = others.filter_map(|input| {
         let one = risks.iter().find(|one| one.input == input.name)?;

@@ -34,7 +34,7 @@ pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnosti
     let mut found = Vec::new();
     duplicate_rules(model, &at, &mut found);
     let mut gaps = gaps(report);
-    gaps.retain(|gap| !at.is_of_silent_rules(gap.region, report));
+    gaps.retain(|gap| !at.is_of_never_firing_rules(gap.region, report));
     for gap in gaps.iter().take(MAX_LISTED_BOXES) {
         found.push(at.uncovered(gap));
     }
@@ -315,7 +315,7 @@ impl ModelPositions<'_> {
     }
 
     /// Whether the rules of a region exist, but never fire, which is reported on its own.
-    fn is_of_silent_rules(&self, region: &UncoveredRegion, report: &Report) -> bool {
+    fn is_of_never_firing_rules(&self, region: &UncoveredRegion, report: &Report) -> bool {
         let is_of = |rule: &usize, antecedents: &[Antecedent]| {
             let Some(rule) = self.model.rules.get(*rule).map(|rule| &rule.rule) else {
                 return false;
@@ -489,7 +489,8 @@ impl ModelPositions<'_> {
             let help = outer::remedies(self.model, output, &one.unreached);
             return Some(Diagnostic::warning("narrow-reach", here, message).help(help));
         }
-        if outer::covers_range(output, (one.low, one.high)) || self.has_unheard_rules(name, report)
+        if outer::covers_range(output, (one.low, one.high))
+            || self.has_ineffective_rules(name, report)
         {
             return None;
         }
@@ -514,7 +515,7 @@ impl ModelPositions<'_> {
     }
 
     /// Whether rules for an output never fire, contradict each other, or leave out a term, which is reported on its own.
-    fn has_unheard_rules(&self, output: &str, report: &Report) -> bool {
+    fn has_ineffective_rules(&self, output: &str, report: &Report) -> bool {
         let concludes = |rule: &usize| {
             let rule = self.model.rules.get(*rule);
             rule.is_some_and(|rule| {

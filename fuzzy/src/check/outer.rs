@@ -184,9 +184,8 @@ pub(super) fn remedies(model: &Model, output: &Output, unreached: &[UnreachedTer
         .terms
         .iter()
         .map(|term| {
-            let (first, last) = variable.plateau(&term.membership_function);
             let reported = unreached.iter().find(|one| one.term == term.name);
-            reported.map_or((first + last) / 2.0, |one| one.peak)
+            reported.map_or_else(|| variable.peak(&term.membership_function), |one| one.peak)
         })
         .collect();
     let numbers = listed(variable, &peaks, |peak| {

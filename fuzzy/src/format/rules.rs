@@ -5,13 +5,13 @@ use alloc::{
     string::{String, ToString},
     vec::Vec,
 };
-use core::ops::Range;
+use core::{cell::OnceCell, ops::Range};
 
 use super::{RuleSpans, Spans, optional_text};
 use crate::{
     diagnostic::Diagnostic,
     model::{Model, RejectedConsequent, Rule, Variable},
-    rule::{self, Condition, KnownNames, KnownVariable},
+    rule::{self, Condition, Known, KnownNames, KnownVariable},
     tree::{Fields, Node, Scalar, Value},
 };
 
@@ -36,12 +36,15 @@ pub(super) fn read(
         }));
         return None;
     };
-    let known_inputs: Vec<KnownVariable<'_>> = model.inputs.iter().map(known_variable).collect();
-    let outputs = model.outputs.iter().map(|output| &output.variable);
-    let known_outputs: Vec<KnownVariable<'_>> = outputs.map(known_variable).collect();
-    let known = KnownNames {
-        inputs: &known_inputs,
-        outputs: &known_outputs,
+    // The positions of terms are found by sampling, so the names are collected only for the first syntax error.
+    let names = OnceCell::new();
+    let known = || {
+        let (inputs, outputs) = names.get_or_init(|| {
+            let outputs = model.outputs.iter().map(|output| &output.variable);
+            let inputs: Vec<KnownVariable<'_>> = model.inputs.iter().map(known_variable).collect();
+            (inputs, outputs.map(known_variable).collect::<Vec<_>>())
+        });
+        KnownNames { inputs, outputs }
     };
     let before = model.rules.len();
     let mut rules = Vec::with_capacity(items.len());
@@ -75,7 +78,7 @@ pub(super) fn read(
             whole: item.span.clone(),
             ..RuleSpans::default()
         };
-        match one(item, before + i + 1, known, &mut here, findings) {
+        match one(item, before + i + 1, &known, &mut here, findings) {
             Some(rule) => {
                 rules.push(rule);
                 spans.rules.push(here);
@@ -115,7 +118,7 @@ fn of_parts(fields: &Fields<'_>) -> Option<String> {
 fn one(
     node: &Node,
     number: usize,
-    known: KnownNames<'_>,
+    known: Known<'_>,
     spans: &mut RuleSpans,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<Rule> {
@@ -192,8 +195,8 @@ fn one(
 /// Returns the name of a variable, with its terms in the order of their highest degrees.
 fn known_variable(variable: &Variable) -> KnownVariable<'_> {
     let terms = variable.terms.iter().map(|term| {
-        let (first, last) = variable.plateau(&term.membership_function);
-        (first + last, term.name.as_str())
+        let peak = variable.peak(&term.membership_function);
+        (peak, term.name.as_str())
     });
     let mut terms: Vec<(f64, &str)> = terms.collect();
     terms.sort_by(|(a, _), (b, _)| a.total_cmp(b));
@@ -300,7 +303,7 @@ fn rejected(
 /// document.
 fn parse(
     scalar: &Scalar,
-    known: KnownNames<'_>,
+    known: Known<'_>,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<(rule::Rule, Range<usize>)> {
     match rule::parse_with_weight(&scalar.text, known) {

@@ -99,12 +99,10 @@ fn reversed(what: &str, variable: &Variable, spans: &VariableSpans) -> Option<Di
     if !is_read || !are_ends || variable.terms.len() < FEWEST {
         return None;
     }
-    let middles = shapes().map(|shape| {
-        let (left, right) = variable.plateau(shape);
-        left + right
-    });
-    let middles: Vec<f64> = middles.collect();
-    if !middles.is_sorted_by(|left, right| left > right) {
+    if !shapes()
+        .map(|shape| variable.peak(shape))
+        .is_sorted_by(|left, right| left > right)
+    {
         return None;
     }
     let (name, other) = (&variable.terms.first()?.name, &variable.terms.last()?.name);

@@ -21,6 +21,7 @@ use crate::{
         between_peaks, even_peaks,
     },
     tree::{Entry, Fields, Node, Value},
+    validate::TERMS_HELP,
 };
 
 pub(super) const INPUT_KEYS: [&str; 7] = [
@@ -378,8 +379,11 @@ fn variable(
                 .entries()
                 .iter()
                 .find(|entry| forms.contains(&entry.key));
-            let help = "write `partition: [low, medium, high]`, or `terms` with a membership function for each term";
-            fields.require(empty.map_or("terms", |entry| entry.key), help, findings);
+            fields.require(
+                empty.map_or("terms", |entry| entry.key),
+                TERMS_HELP,
+                findings,
+            );
             let stray: Vec<&str> = fields.unknown().map(|entry| entry.key).collect();
             if let Some(empty) = empty
                 && !stray.is_empty()

@@ -19,7 +19,7 @@ impl Consequents {
         let shapes = || output.terms.iter().map(|term| &term.membership_function);
         Consequents {
             peaks: shapes()
-                .map(|shape| number(shape).unwrap_or_else(|| peak(output, shape)))
+                .map(|shape| number(shape).unwrap_or_else(|| output.peak(shape)))
                 .collect(),
             are_numbers: shapes().all(|shape| number(shape).is_some()),
         }
@@ -76,10 +76,4 @@ pub(super) fn highest(variable: &Variable, value: f64) -> Option<(u16, f64)> {
         }
     }
     best
-}
-
-/// Returns the middle of the interval where a term is highest.
-pub(super) fn peak(variable: &Variable, shape: &MembershipFunction) -> f64 {
-    let (first, last) = variable.plateau(shape);
-    (first + last) / 2.0
 }

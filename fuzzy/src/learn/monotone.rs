@@ -4,7 +4,6 @@ use alloc::{boxed::Box, collections::BTreeMap, string::String, vec, vec::Vec};
 
 use super::{
     Direction, Learner,
-    consequents::peak,
     resolve::{Decision, degree},
 };
 use crate::model::Variable;
@@ -151,7 +150,7 @@ fn axes(learner: &Learner) -> Vec<Axis> {
         let peaks: Vec<f64> = input
             .terms
             .iter()
-            .map(|term| peak(input, &term.membership_function))
+            .map(|term| input.peak(&term.membership_function))
             .collect();
         let mut directions = learner.settings.monotone.iter();
         let found = directions.find(|(name, _)| *name == input.name);

@@ -23,6 +23,12 @@ impl Variable {
         (within(first), within(last))
     }
 
+    /// Returns the middle of the interval where a membership function is highest.
+    pub(crate) fn peak(&self, shape: &MembershipFunction) -> f64 {
+        let (first, last) = self.plateau(shape);
+        (first + last) / 2.0
+    }
+
     /// Finds the plateau by sampling, to within 1/2000 of the range.
     fn sampled_plateau(&self, shape: &MembershipFunction) -> (f64, f64) {
         const STEPS: u32 = 2000;

@@ -1,6 +1,6 @@
 //! The messages for the first syntax error in a rule, with suggestions.
 
-use alloc::{format, string::String};
+use alloc::{format, string::String, vec::Vec};
 
 use nom::error::{ErrorKind, ParseError};
 
@@ -32,7 +32,15 @@ pub(crate) struct KnownNames<'a> {
     pub(crate) outputs: &'a [KnownVariable<'a>],
 }
 
+/// A function that returns the known names.
+pub(crate) type Known<'a> = &'a dyn Fn() -> KnownNames<'a>;
+
 impl<'a> KnownNames<'a> {
+    /// Returns the terms of the input or output with this name; empty if it is unknown.
+    fn terms(self, name: &str) -> &'a [&'a str] {
+        self.variable(name).map_or(&[], |variable| &variable.terms)
+    }
+
     /// Returns the input or output with this name.
     fn variable(self, name: &str) -> Option<&'a KnownVariable<'a>> {
         let mut variables = self.inputs.iter().chain(self.outputs);
@@ -109,11 +117,12 @@ impl<'a> ParseError<&'a str> for RuleMistake<'a> {
 
 const CONNECTIVES: [&str; 3] = ["AND", "OR", "THEN"];
 
-/// Returns the position of `more` in a text that ends in `more or`.
-fn more_or(before: &str) -> Option<usize> {
+/// Returns the position of the phrase `more or less` if the name is its last word and the text before ends in `more or`.
+fn more_or_less(before: &str, name: &str) -> Option<usize> {
     let mut words = before.split_whitespace().rev();
     let (or, more) = (words.next()?, words.next()?);
-    let is_phrase = or.eq_ignore_ascii_case("or") && more.eq_ignore_ascii_case("more");
+    let is = |word: &str, known: &str| word.eq_ignore_ascii_case(known);
+    let is_phrase = is(more, "more") && is(or, "or") && is(name, "less");
     is_phrase.then(|| before.rfind(more)).flatten()
 }
 
@@ -189,8 +198,7 @@ impl RuleMistake<'_> {
                 let start = text.len() - from.len();
                 let before = text.get(..start).unwrap_or("");
                 let help = is_missing(kind, name, rest, before, known);
-                let diagnostic = match more_or(before).filter(|_| name.eq_ignore_ascii_case("less"))
-                {
+                let diagnostic = match more_or_less(before, name) {
                     Some(more) => {
                         let message = "there is no hedge `more or less`";
                         Diagnostic::error("rule-syntax", more..start + name.len(), message)

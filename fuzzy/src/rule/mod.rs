@@ -16,7 +16,7 @@ mod print;
 mod tests;
 
 pub use crate::table::Hedge;
-pub(crate) use mistake::{KnownNames, KnownVariable};
+pub(crate) use mistake::{Known, KnownNames, KnownVariable};
 pub(crate) use parse::parse_with_weight;
 pub use parse::{DEEPEST_NESTING, parse};
 

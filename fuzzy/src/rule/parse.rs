@@ -28,7 +28,7 @@ use nom::{
 
 use super::{
     Condition, Consequent, Hedge, Name, Proposition, Rule, is_plain_name,
-    mistake::{KnownNames, RuleMistake, RuleMistakeKind},
+    mistake::{Known, KnownNames, RuleMistake, RuleMistakeKind},
 };
 use crate::diagnostic::{Diagnostic, nearest};
 
@@ -53,20 +53,20 @@ pub const DEEPEST_NESTING: usize = 64;
 /// # Ok::<(), Box<fuzzy::diagnostic::Diagnostic>>(())
 /// ```
 pub fn parse(text: &str) -> Result<Rule, Box<Diagnostic>> {
-    parse_with_weight(text, KnownNames::default()).map(|(rule, _)| rule)
+    parse_with_weight(text, &KnownNames::default).map(|(rule, _)| rule)
 }
 
 /// Parses a rule, and also returns the position of its weight: the number after WITH, or the empty range after the
-/// conclusion. Suggestions contain the names in `known`.
+/// conclusion. Suggestions contain the names that `known` returns; it is called only for a syntax error.
 pub(crate) fn parse_with_weight(
     text: &str,
-    known: KnownNames<'_>,
+    known: Known<'_>,
 ) -> Result<(Rule, Range<usize>), Box<Diagnostic>> {
     let source = Source { text };
     match source.rule(text) {
         Ok((_, found)) => Ok(found),
         Err(Err::Error(mistake) | Err::Failure(mistake)) => {
-            Err(Box::new(mistake.explain(text, known)))
+            Err(Box::new(mistake.explain(text, known())))
         }
         // Only nom's streaming parsers report incomplete input, and they are not used here.
         Err(Err::Incomplete(_)) => Err(Box::new(Diagnostic::error(

@@ -3,7 +3,7 @@
 use alloc::{borrow::ToOwned, collections::BTreeMap, format, string::String, vec::Vec};
 use core::ops::Range;
 
-use super::{Validator, or};
+use super::{TERMS_HELP, Validator, or};
 use crate::{
     diagnostic::{Diagnostic, listed, nearest, suggest},
     model::{MembershipFunction, Rule, Term, Variable, document::RuleSpans},
@@ -234,11 +234,10 @@ impl<'m> Validator<'m> {
                 .map_or(term.span.clone(), |(_, spans)| spans.name.clone());
             let message = format!("{kind} `{}` has no terms", variable.name);
             let finding = Diagnostic::error("missing-key", here, message);
-            let help = "write `partition: [low, medium, high]`, or `terms` with a membership function for each term";
             self.findings.push(
                 finding
                     .related(term.span.clone(), "a term is named here")
-                    .help(help),
+                    .help(TERMS_HELP),
             );
             self.unread.push(&variable.name);
             return;

@@ -3,7 +3,7 @@
 use alloc::{collections::BTreeSet, format, string::String, vec::Vec};
 use core::ops::Range;
 
-use super::{MAX_FINDINGS, Validator, or};
+use super::{MAX_FINDINGS, TERMS_HELP, Validator, or};
 use crate::{
     defuzzify::is_empty,
     diagnostic::{all_of, nearest},
@@ -201,8 +201,7 @@ impl Validator<'_> {
         self.variable(&what, variable, spans);
         if variable.terms.is_empty() && !spans.terms_unread {
             let message = format!("{what} has no terms");
-            let help = "write `partition: [low, medium, high]`, or `terms` with a membership function for each term";
-            self.error("missing-key", &spans.name, message, help);
+            self.error("missing-key", &spans.name, message, TERMS_HELP);
         }
         if let Some(sampling) = output.samples {
             let here = or(&spans.samples, &spans.name);
@@ -327,9 +326,8 @@ impl Validator<'_> {
         let defuzzifier = if is_monotone { "tsukamoto" } else { "centroid" };
         let variable = &output.variable;
         let numbers = terms.map(|term| {
-            let (first, last) = variable.plateau(&term.membership_function);
-            let middle = libm::round(5e5 * (first + last)) / 1e6;
-            format!("{}: {{constant: {middle}}}", term.name)
+            let peak = libm::round(1e6 * variable.peak(&term.membership_function)) / 1e6;
+            format!("{}: {{constant: {peak}}}", term.name)
         });
         let numbers: Vec<String> = numbers.collect();
         let numbers = format!("`{}`", numbers.join(", "));

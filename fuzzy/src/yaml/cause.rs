@@ -7,7 +7,7 @@ use granit_parser::ErrorKind;
 
 use super::{
     foreign::{foreign, lines},
-    syntax::{SyntaxError, own},
+    syntax::{SyntaxError, specific_or},
 };
 use crate::{diagnostic::Diagnostic, format::is_key_of_variable};
 
@@ -110,7 +110,7 @@ pub(super) fn line(text: &str, error: &SyntaxError) -> Option<Diagnostic> {
         let value = rest.get(..end)?;
         let message = String::from("a colon is missing before a bracket");
         let finding = Diagnostic::error("yaml-syntax", at..at + key.len(), message);
-        let help = own(
+        let help = specific_or(
             text,
             format!("write `{key}: {value}`"),
             "write `key: [value, value]`",
@@ -178,11 +178,8 @@ fn list_entry(text: &str, start: usize) -> Option<Diagnostic> {
     if !content.starts_with("- ") {
         return None;
     }
-    let above = text.get(..start)?.lines().rev();
-    let mut above = above.filter(|line| !line.trim().is_empty() && !line.trim().starts_with('#'));
-    let is_below_entries = above
-        .next()
-        .is_some_and(|line| line.trim().starts_with("- "));
+    let is_below_entries =
+        line_above(text, start).is_some_and(|line| line.trim().starts_with("- "));
     let (message, help) = match is_below_entries {
         true => (
             "this entry starts in a different column from the entries above it",
@@ -214,7 +211,7 @@ fn second_colon(text: &str, start: usize) -> Option<Diagnostic> {
             let general = "put the text in quotes";
             (
                 "a text that contains `: ` must be in quotes",
-                own(text, format!("write `{key}: \"{value}\"`"), general),
+                specific_or(text, format!("write `{key}: \"{value}\"`"), general),
             )
         }
     };
@@ -224,14 +221,12 @@ fn second_colon(text: &str, start: usize) -> Option<Diagnostic> {
 /// Returns a finding for a key that is indented more than the key above, and for a colon in a text of several lines.
 fn further_right(text: &str, start: usize) -> Option<Diagnostic> {
     let (at, content) = content_at(text, start)?;
-    let above = text.get(..start)?.lines().rev();
-    let mut above = above.filter(|line| !line.trim().is_empty());
-    let line = above.next()?;
+    let line = line_above(text, start)?;
     let is_more = at - start > line.len() - line.trim_start().len();
     let (message, help) = match line.trim().split_once(": ") {
         Some((key, _)) if is_key(key) && is_more => (
             "this key is indented more than the key above it",
-            own(
+            specific_or(
                 text,
                 format!("begin it in the same column as `{key}:`"),
                 "begin the keys of one mapping in the same column",
@@ -245,6 +240,12 @@ fn further_right(text: &str, start: usize) -> Option<Diagnostic> {
     };
     let colon = content.find(": ").map_or(content.len(), |colon| colon + 1);
     Some(Diagnostic::error("yaml-syntax", at..at + colon, message).help(help))
+}
+
+/// Returns the last line above `start` that is neither empty nor a comment.
+fn line_above(text: &str, start: usize) -> Option<&str> {
+    let mut above = text.get(..start)?.lines().rev();
+    above.find(|line| !line.trim().is_empty() && !line.trim().starts_with('#'))
 }
 
 /// Returns the line that starts at `start` without its indentation, and the position of its content.
@@ -263,7 +264,7 @@ fn missing_space_after_colon(text: &str, start: usize) -> Option<Diagnostic> {
     }
     let message = "a space is missing after a colon";
     let finding = Diagnostic::error("yaml-syntax", at..at + content.len(), message);
-    Some(finding.help(own(
+    Some(finding.help(specific_or(
         text,
         format!("write `{key}: {value}`"),
         "write `key: value`",
@@ -284,7 +285,11 @@ fn no_colon(text: &str, start: usize) -> Option<Diagnostic> {
     let message = "a colon is missing after a key";
     let finding = Diagnostic::error("yaml-syntax", at..at + content.len(), message);
     let general = "write `key: value`, with a colon and a space";
-    Some(finding.help(own(text, format!("write `{key}: {value}`"), general)))
+    Some(finding.help(specific_or(
+        text,
+        format!("write `{key}: {value}`"),
+        general,
+    )))
 }
 
 /// Returns a finding for a line of plain text in place of a key, such as a comment without its `#`.
@@ -410,7 +415,7 @@ fn key_without_colon(text: &str, start: usize) -> Option<Diagnostic> {
     let is_meant = is_key(content) && indent(below) > indent(line) && below.contains(':');
     is_meant.then(|| {
         let message = String::from("a colon is missing after a key");
-        let help = own(
+        let help = specific_or(
             text,
             format!("write `{content}:`"),
             "write a colon after it",

@@ -59,14 +59,17 @@ pub fn read(text: &str) -> Result<Node, Findings> {
     })
 }
 
-/// Returns whether a line of a text begins with a key that only rule sets and profiles have. Other files are never
-/// quoted in messages: a profile from somebody else may name a file that contains secrets.
+/// The keys by which a text is recognised as a rule set.
+#[doc(hidden)] // For the programs of this repository.
+pub const KEYS_OF_RULES: [&str; 4] = ["fuzzy", "inputs", "outputs", "rules"];
+
+/// Returns whether a line of a text begins with one of these keys.
 #[doc(hidden)] // For the programs of this repository.
 #[must_use]
-pub fn is_meant_as_rules(text: &str) -> bool {
+pub fn has_key(text: &str, keys: &[&str]) -> bool {
     text.lines().any(|line| {
         let line = line.trim_start_matches([' ', '-', '{', '"', '\'']);
-        ["fuzzy", "inputs", "outputs", "rules"].iter().any(|key| {
+        keys.iter().any(|key| {
             let rest = line.strip_prefix(key);
             rest.is_some_and(|rest| rest.trim_start_matches(['"', '\'', ' ']).starts_with(':'))
         })

@@ -4,7 +4,7 @@ use alloc::{boxed::Box, format, string::String, vec::Vec};
 
 use granit_parser::{ErrorKind, ScanError};
 
-use super::{DEEPEST, is_meant_as_rules};
+use super::{DEEPEST, KEYS_OF_RULES, has_key};
 use crate::diagnostic::Diagnostic;
 
 /// A syntax error, with the kind of error that the library reported; `None` for an error that this program detected.
@@ -20,11 +20,11 @@ impl From<Diagnostic> for Box<SyntaxError> {
     }
 }
 
-/// Returns a suggestion with words of the text if the text is a rule set or a profile, otherwise a general one. Any file
-/// can be named by mistake, for example one with secrets, so that its words are not repeated.
-pub(super) fn own(text: &str, own: String, general: &str) -> String {
-    match is_meant_as_rules(text) {
-        true => own,
+/// Returns the specific suggestion, which repeats words of the text, if the text is a rule set or a profile; otherwise the
+/// general one. Any file can be named by mistake, for example one with secrets, whose words must not be repeated.
+pub(super) fn specific_or(text: &str, specific: String, general: &str) -> String {
+    match has_key(text, &KEYS_OF_RULES) {
+        true => specific,
         false => general.into(),
     }
 }
@@ -63,12 +63,12 @@ fn quotes(text: &str, at: usize, kind: &ErrorKind) -> Option<Diagnostic> {
         ErrorKind::UnclosedQuotedScalar
         | ErrorKind::DocumentIndicatorInQuotedScalar
         | ErrorKind::InvalidQuotedScalarIndent => {
-            let open = Open::before(text, at).quote?;
+            let open = OpenDelimiters::before(text, at).quote?;
             let rest = rest_of_line(text, open);
             let quote = rest.get(..1)?;
             let help = match rest.contains([',', '}', ']', '#', ':']) {
                 true => "add the closing quote".into(),
-                false => own(
+                false => specific_or(
                     text,
                     format!("write `{rest}{quote}`"),
                     "add the closing quote",
@@ -138,7 +138,7 @@ fn brackets(text: &str, at: usize, kind: &ErrorKind) -> Option<Diagnostic> {
         {
             at
         }
-        _ => *Open::before(text, at).brackets.last()?,
+        _ => *OpenDelimiters::before(text, at).brackets.last()?,
     };
     let is_here = !text.get(open..at)?.contains('\n');
     let is_open = matches!(
@@ -193,7 +193,7 @@ fn of_one_word(text: &str, at: usize, kind: &ErrorKind) -> Option<Diagnostic> {
             let help = "write the value here, or define the alias before it is used";
             let specific =
                 format!("write the value here, or mark the value that is meant with `&{name}`");
-            let help = own(text, specific, help);
+            let help = specific_or(text, specific, help);
             let span = at..at + end;
             Some(Diagnostic::error("yaml-syntax", span, "the alias is not defined").help(help))
         }
@@ -205,7 +205,7 @@ fn of_one_word(text: &str, at: usize, kind: &ErrorKind) -> Option<Diagnostic> {
             let end = rest.find([',', ']', '}', '#']).unwrap_or(rest.len());
             let word = rest.get(..end)?.trim_end();
             let message = format!("a text cannot begin with `{character}`");
-            let help = own(
+            let help = specific_or(
                 text,
                 format!("put it in quotes: `\"{word}\"`"),
                 "put it in quotes",
@@ -289,15 +289,15 @@ fn message(text: &str, at: usize, kind: &ErrorKind) -> (String, &'static str) {
 
 /// The brackets and the quote that are open at a position.
 #[derive(Default)]
-struct Open {
+struct OpenDelimiters {
     brackets: Vec<usize>,
     quote: Option<usize>,
 }
 
-impl Open {
-    /// Returns what is open before `end`.
-    fn before(text: &str, end: usize) -> Open {
-        let mut open = Open::default();
+impl OpenDelimiters {
+    /// Returns the brackets and the quote that are open before `end`.
+    fn before(text: &str, end: usize) -> OpenDelimiters {
+        let mut open = OpenDelimiters::default();
         // A quote or a bracket in the middle of a word has no meaning.
         let mut begins = true;
         let mut letters = text

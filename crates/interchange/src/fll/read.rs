@@ -190,31 +190,21 @@ fn sections<'t>(draft: &mut ModelDraft<'t>) -> Vec<Section<'t>> {
             continue;
         }
         let message = format!("unknown key `{key}`");
-        // A misspelt key is read as the one that is meant, so that the latter is not reported as missing as well.
-        if let Some(near) = nearest(key, keys.iter().copied()) {
-            draft.error(
-                "unknown-key",
-                key,
-                message,
-                &format!("did you mean `{near}`?"),
-            );
-            section.entries.push(Entry { key: near, value });
-        } else if let Some(near) = nearest(key, SECTIONS)
-            && let Some(kind) = SectionKind::of(near)
-        {
-            draft.error(
-                "unknown-key",
-                key,
-                message,
-                &format!("did you mean `{near}`?"),
-            );
-            sections.push(Section {
+        // A misspelt word is read as the one that is meant, so that the latter is not reported as missing as well.
+        let near_key = nearest(key, keys.iter().copied());
+        let Some(near) = near_key.or_else(|| nearest(key, SECTIONS)) else {
+            draft.warning("unknown-key", key, message, "it is left out");
+            continue;
+        };
+        let help = format!("did you mean `{near}`?");
+        draft.error("unknown-key", key, message, &help);
+        match SectionKind::of(near).filter(|_| near_key.is_none()) {
+            Some(kind) => sections.push(Section {
                 kind,
                 name: value,
                 entries: vec![],
-            });
-        } else {
-            draft.warning("unknown-key", key, message, "it is left out");
+            }),
+            None => section.entries.push(Entry { key: near, value }),
         }
     }
     sections

@@ -58,10 +58,7 @@ pub(super) fn not_a_number(input: &str) -> String {
 
 /// Returns a suggestion for a comparison of an input with a term or a number.
 pub(super) fn compared(input: &str, side: Side, term: &str, known: KnownNames<'_>) -> String {
-    let terms = known
-        .variable(input)
-        .map(|variable| variable.terms.as_slice())
-        .unwrap_or_default();
+    let terms = known.terms(input);
     let Some(at) = terms
         .iter()
         .position(|known| known.eq_ignore_ascii_case(term))
@@ -85,10 +82,7 @@ pub(super) fn compared(input: &str, side: Side, term: &str, known: KnownNames<'_
 
 /// Returns a suggestion for `BETWEEN cold AND hot`.
 pub(super) fn between(input: &str, low: &str, high: &str, known: KnownNames<'_>) -> String {
-    let terms = known
-        .variable(input)
-        .map(|variable| variable.terms.as_slice())
-        .unwrap_or_default();
+    let terms = known.terms(input);
     let high = found_here(high);
     let at = |term: &str| {
         terms

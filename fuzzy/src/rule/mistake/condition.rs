@@ -5,6 +5,7 @@ use alloc::{format, string::String, vec::Vec};
 use super::{
     CONNECTIVES, KnownNames,
     comparison::{between, compared, not_a_number, side_of_sign, side_of_words},
+    more_or_less,
     words::{found_here, last_input, one_of, sign},
 };
 use crate::{
@@ -307,16 +308,8 @@ pub(super) fn phrase_after_name(name: &str, rest: &str, before: &str) -> Option<
         let term = found_here(behind.trim_start());
         return Some(format!("write `{name} IS NOT {term}`"));
     }
-    let mut words = before.split_whitespace().rev();
-    let is_more_or = words
-        .next()
-        .is_some_and(|word| word.eq_ignore_ascii_case("or"))
-        && words
-            .next()
-            .is_some_and(|word| word.eq_ignore_ascii_case("more"));
     let input = last_input(before).unwrap_or("input");
-    (is_more_or && name.eq_ignore_ascii_case("less"))
-        .then(|| format!("write `{input} IS somewhat {found}`"))
+    more_or_less(before, name).map(|_| format!("write `{input} IS somewhat {found}`"))
 }
 
 /// Returns a suggestion for `temperature IN (mild, hot)`; `list` begins with the bracket.

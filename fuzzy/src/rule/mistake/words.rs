@@ -81,10 +81,7 @@ pub(super) fn name_is_missing(
         });
     }
     // For example `humidity IS not THEN`, with a term `not`.
-    let variable = last_input(before).and_then(|name| known.variable(name));
-    let terms = variable
-        .map(|variable| variable.terms.as_slice())
-        .unwrap_or_default();
+    let terms = last_input(before).map_or(&[][..], |name| known.terms(name));
     let is_term = |word: &str| {
         Rule::is_keyword(word) && terms.iter().any(|term| term.eq_ignore_ascii_case(word))
     };
