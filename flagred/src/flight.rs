@@ -113,8 +113,8 @@ struct Flight {
     steps: Vec<Step>,
     /// The risk of each step with the intervals of its inputs; `None` if it is unknown.
     uncertain: Vec<Option<UncertainRisk>>,
-    /// The highest risks of the findings.
-    peaks: Vec<UncertainPeak>,
+    /// The highest risks of the findings: those of the profile's `output`, then those of each of the other risks.
+    peaks: Vec<Vec<UncertainPeak>>,
     next_step_s: f64,
     widened_step_s: Option<f64>,
     last: Option<PreviousSample>,
@@ -326,8 +326,13 @@ impl Assessor {
         let (Some(step_s), flight) = (self.step_s, &mut self.flight) else {
             return;
         };
-        if let Ok(estimate) = update.risk {
-            UncertainPeak::keep(&mut flight.peaks, &flight.findings, &self.monitor, estimate);
+        for (risk, monitor) in self.monitor.of_each_risk().enumerate() {
+            if flight.peaks.len() == risk {
+                flight.peaks.push(Vec::new());
+            }
+            if let Some(peaks) = flight.peaks.get_mut(risk) {
+                UncertainPeak::keep(peaks, &flight.findings, monitor);
+            }
         }
         if update.t_s < flight.next_step_s {
             return;
@@ -341,9 +346,8 @@ impl Assessor {
             next_s if next_s > update.t_s => next_s,
             _ => update.t_s + step_s,
         };
-        let uncertain = update.risk.ok().filter(|_| self.has_intervals);
-        let uncertain = uncertain.and_then(|risk| UncertainRisk::of(&self.monitor, risk));
-        flight.uncertain.push(uncertain);
+        let uncertain = self.has_intervals.then(|| UncertainRisk::of(&self.monitor));
+        flight.uncertain.push(uncertain.flatten());
         flight.steps.push(Step {
             t_s: update.t_s,
             estimate: update.risk.ok(),
@@ -531,16 +535,21 @@ impl Flight {
 
     /// Computes the intervals of the steps' risks and of the findings' highest risks.
     fn bound_risks(&mut self, estimator: &Estimator) {
-        if self.peaks.is_empty() && self.uncertain.iter().all(Option::is_none) {
-            return;
+        if self.uncertain.iter().any(Option::is_some) {
+            let mut bounds = RiskBounds::new(estimator);
+            for (step, risk) in self.steps.iter_mut().zip(&self.uncertain) {
+                step.risk_interval = risk.as_ref().and_then(|risk| bounds.of(risk));
+            }
         }
-        let mut bounds = RiskBounds::new(estimator);
-        for (step, risk) in self.steps.iter_mut().zip(&self.uncertain) {
-            step.risk_interval = risk.as_ref().and_then(|risk| bounds.of(risk));
-        }
-        for finding in &mut self.findings {
-            if finding.measure == Measure::Risk && finding.risk_output.is_none() {
-                let risk = UncertainPeak::find(&self.peaks, finding.from_s);
+        let of_each_risk = core::iter::once(estimator).chain(estimator.others());
+        for (risk, (estimator, peaks)) in of_each_risk.zip(&self.peaks).enumerate() {
+            let mut bounds = RiskBounds::new(estimator);
+            let output = (risk > 0).then(|| estimator.profile().output.as_str());
+            let is_of_risk = |finding: &&mut Finding| {
+                finding.measure == Measure::Risk && finding.risk_output.as_deref() == output
+            };
+            for finding in self.findings.iter_mut().filter(is_of_risk) {
+                let risk = UncertainPeak::find(peaks, finding.from_s);
                 finding.risk_interval = risk.and_then(|risk| bounds.of(risk));
             }
         }

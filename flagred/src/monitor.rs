@@ -129,8 +129,8 @@ pub struct Monitor {
     ended_other_risks: Vec<RiskFinding>,
     /// The reason why the risk of this monitor is unknown after the latest sample; the other risks are not considered.
     unknown: Option<Unknown>,
-    /// The risk of this monitor after the latest sample in %; NaN is unknown.
-    risk_pct: f64,
+    /// The risk of this monitor after the latest sample; `None` if it is unknown.
+    risk: Option<Estimate>,
 }
 
 /// A finding about another risk of the profile.
@@ -212,7 +212,7 @@ impl Monitor {
         Ok(Monitor {
             ended_other_risks: Vec::with_capacity(others.len()),
             unknown: None,
-            risk_pct: f64::NAN,
+            risk: None,
             others,
             memory: Memory::of(estimator),
             room: OwnedBuffers {
@@ -284,7 +284,7 @@ impl Monitor {
             estimator.cause(&room.inputs, risk_pct, memory)
         });
         self.unknown = update.risk.err();
-        self.risk_pct = update.risk.map_or(f64::NAN, |estimate| estimate.risk_pct);
+        self.risk = update.risk.ok();
         update
     }
 
@@ -331,8 +331,18 @@ impl Monitor {
         Some(all)
     }
 
-    /// The beginning in seconds and the highest value in % of the open finding of the first risk, or of the finding
-    /// that will be opened if a threshold stays reached.
+    /// The monitors of all risks: this one, then those of the other risks of the profile.
+    pub(crate) fn of_each_risk(&self) -> impl Iterator<Item = &Monitor> {
+        core::iter::once(self).chain(&self.others)
+    }
+
+    /// The risk after the latest sample; `None` if it is unknown.
+    pub(crate) fn risk(&self) -> Option<Estimate> {
+        self.risk
+    }
+
+    /// The beginning in seconds and the highest value in % of the open finding of the risk of this monitor, or of the
+    /// finding that will be opened if a threshold stays reached.
     pub(crate) fn peak_of_risk(&self) -> Option<(f64, f64)> {
         self.follower.peak_of_risk()
     }
@@ -382,7 +392,8 @@ impl Monitor {
 
     /// The other risks after the latest sample in %, in the order of [`Profile::other_risks`]; NaN is unknown.
     pub fn other_risks_pct(&self) -> impl Iterator<Item = f64> {
-        self.others.iter().map(|other| other.risk_pct)
+        let risks = self.others.iter().map(|other| other.risk);
+        risks.map(|risk| risk.map_or(f64::NAN, |estimate| estimate.risk_pct))
     }
 
     /// The worst open finding that is not about the risk, with its values so far: little reserve or an imbalance. A
@@ -415,7 +426,7 @@ impl Monitor {
         (self.room).save(to);
         self.follower.save(to);
         self.unknown.save(to);
-        self.risk_pct.save(to);
+        self.risk.save(to);
         self.ended_other_risks.save(to);
         self.others.iter().for_each(|other| other.save(to));
     }
@@ -431,7 +442,7 @@ impl Monitor {
         self.room = room;
         self.follower = Follower::load(from)?;
         self.unknown = State::load(from)?;
-        self.risk_pct = State::load(from)?;
+        self.risk = State::load(from)?;
         self.ended_other_risks.clear();
         self.ended_other_risks
             .extend(Vec::<RiskFinding>::load(from)?);

@@ -8,7 +8,7 @@ use alloc::{collections::VecDeque, string::String, vec::Vec};
 use fuzzy::engine::Interval;
 
 /// The version of the layout. Raise it when a type below gets or loses a field.
-pub(crate) const VERSION: u32 = 2;
+pub(crate) const VERSION: u32 = 3;
 
 const NAME: &[u8] = b"flagred state ";
 

@@ -18,7 +18,7 @@ pub struct Finding {
     /// The cause of the risk; `None` if no rule raised it, as for a notice or an interpolated risk.
     pub cause: Option<Cause>,
     /// The interval of the highest risk of the finding, from the uncertainty of its inputs. `None` if steps are not kept,
-    /// for other measures than the risk, for another risk of the profile, and if the uncertainty is unknown.
+    /// for other measures than the risk, and if the uncertainty is unknown.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub risk_interval: Option<RiskInterval>,
     /// The output that is the risk, if it is one of [`Profile::other_risks`](crate::profile::Profile::other_risks).

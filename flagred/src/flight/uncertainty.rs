@@ -36,8 +36,9 @@ pub(super) struct UncertainRisk {
 }
 
 impl UncertainRisk {
-    /// Creates the uncertain risk after a sample; `None` if the uncertainty of an input is unknown.
-    pub(super) fn of(monitor: &Monitor, estimate: Estimate) -> Option<UncertainRisk> {
+    /// Creates the uncertain risk after a sample; `None` if the risk or the uncertainty of an input is unknown.
+    pub(super) fn of(monitor: &Monitor) -> Option<UncertainRisk> {
+        let estimate = monitor.risk()?;
         let inputs = match estimate == Estimate::FALL {
             true => Vec::new(),
             false => monitor.intervals()?,
@@ -64,17 +65,14 @@ impl UncertainPeak {
     /// Stores the intervals of the inputs after a sample if the risk of this sample is the highest so far of the open
     /// finding, or of a finding that may be opened. `peaks` has one element for each of the `ended` findings that had
     /// a peak, and a last element for the open finding or for the one that may be opened.
-    pub(super) fn keep(
-        peaks: &mut Vec<UncertainPeak>,
-        ended: &[Finding],
-        monitor: &Monitor,
-        estimate: Estimate,
-    ) {
-        let peak = monitor.peak_of_risk();
-        let Some((from_s, value_pct)) = peak.filter(|(_, highest)| *highest == estimate.risk_pct)
+    pub(super) fn keep(peaks: &mut Vec<UncertainPeak>, ended: &[Finding], monitor: &Monitor) {
+        let (Some((from_s, value_pct)), Some(risk)) = (monitor.peak_of_risk(), monitor.risk())
         else {
             return;
         };
+        if risk.risk_pct != value_pct {
+            return;
+        }
         let last = peaks.last_mut();
         if last.is_some_and(|last| last.from_s == from_s && last.value_pct >= value_pct) {
             return;
@@ -88,7 +86,7 @@ impl UncertainPeak {
         peaks.push(UncertainPeak {
             from_s,
             value_pct,
-            risk: UncertainRisk::of(monitor, estimate),
+            risk: UncertainRisk::of(monitor),
         });
     }
 

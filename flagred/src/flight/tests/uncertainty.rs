@@ -93,9 +93,8 @@ fn no_inputs_within_their_intervals_have_a_risk_outside() {
         let mut assessor = assessor(&estimator);
         let mut risks = Vec::new();
         rising(50.0, |sample| {
-            if let Ok(estimate) = assessor.push(sample).risk {
-                risks.extend(UncertainRisk::of(assessor.monitor(), estimate));
-            }
+            assessor.push(sample);
+            risks.extend(UncertainRisk::of(assessor.monitor()));
         });
         let mut bounds = RiskBounds::new(&estimator);
         let variables = estimator.profile().inputs.iter().map(|input| {
@@ -223,6 +222,58 @@ fn a_finding_reports_that_its_interval_contains_the_threshold() {
     );
     assert_eq!(plain.verdict, flown.verdict);
     assert_eq!(plain.summary, flown.summary);
+}
+
+#[test]
+fn a_finding_of_another_risk_has_the_interval_of_that_risk() {
+    let rules = "
+fuzzy: 1
+name: two
+inputs:
+  load: {range: [0, 1], partition: {light: 0, heavy: 1}}
+  heat: {range: [0, 100], partition: {cool: 0, hot: 100}}
+outputs:
+  risk: {range: [0, 100], terms: {none: {constant: 0}, high: {constant: 50}}, defuzzifier: weighted_average}
+  heat_risk: {range: [0, 100], terms: {none: {constant: 0}, high: {constant: 100}}, defuzzifier: weighted_average}
+rules:
+  - IF load IS light THEN risk IS none
+  - IF load IS heavy THEN risk IS high
+  - IF heat IS cool THEN heat_risk IS none
+  - IF heat IS hot THEN heat_risk IS high
+";
+    let profile = "
+flagred: 1
+name: two
+rules: two
+inputs: {load: {mean: motor_command}, heat: {mean: heat_c}}
+output: risk
+verdict: {warn: {risk: 60, after_s: 0.5}, fail: {risk: 99}}
+other_risks: {heat_risk: {}}
+";
+    let rules = fuzzy::yaml::parse(rules).unwrap().model;
+    let estimator = Estimator::new(&profile.parse().unwrap(), &rules).unwrap();
+    let craft = Craft::new(4).with_signals(&["heat_c"]);
+    let mut assessor = Assessor::new(&estimator, craft, Some(0.1))
+        .unwrap()
+        .with_intervals();
+    let mut random = noise();
+    for i in 0..1000 {
+        let t_s = f64::from(i) * 0.02;
+        assessor.push(&Sample {
+            t_s,
+            motors: &[0.5; 4],
+            in_air: Some(true),
+            signals: &[10.0 * random() + if t_s < 10.0 { 20.0 } else { 70.0 }],
+        });
+    }
+    let flown = assessor.finish();
+    let [finding] = flown.findings.as_slice() else {
+        panic!("{:?}", flown.findings);
+    };
+    assert_eq!(finding.risk_output.as_deref(), Some("heat_risk"));
+    let interval = finding.risk_interval.unwrap();
+    assert!(interval.low_pct < finding.value_pct && finding.value_pct < interval.high_pct);
+    assert!(interval.high_pct < interval.low_pct + 20.0, "{interval:?}");
 }
 
 #[test]
