@@ -321,9 +321,16 @@ fn misfit(
                     at.of(&["rules"]),
                     format!("add `output: {only}`"),
                 ),
-                _ => {
+                (["output"], _) => {
                     let help = suggest(output, outputs.iter().copied())
                         .unwrap_or_else(|| "name the output with `output: NAME`".into());
+                    ("unknown-output", at.of(&place), help)
+                }
+                _ => {
+                    let others = outputs.into_iter().filter(|name| *name != profile.output);
+                    let help = suggest(output, others).unwrap_or_else(|| {
+                        format!("remove it: `{}` is the only output of the rule set", profile.output)
+                    });
                     ("unknown-output", at.of(&place), help)
                 }
             }

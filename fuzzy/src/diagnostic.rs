@@ -390,19 +390,19 @@ pub(crate) fn duplicate(
     let (code, help) = match kind {
         "variable" => (
             "duplicate-variable",
-            "inputs and outputs must have different names; rename one of them",
+            "each input and output must have its own name: rename or remove one of the two",
         ),
         "term" => (
             "duplicate-term",
-            "the terms of a variable must have different names; rename or remove one of them",
+            "each term of a variable must have its own name: rename or remove one of the two",
         ),
         "finding" => (
             "duplicate-key",
-            "keep one entry, and write both reasons in it",
+            "keep one of the entries; if the reasons differ, write both in it",
         ),
         "block" => (
             "duplicate-block",
-            "rule blocks must have different names; rename one of them",
+            "each rule block must have its own name: rename one of the two",
         ),
         _ => ("duplicate-key", "keep one of them"),
     };
@@ -421,19 +421,19 @@ pub(crate) fn likely_candidates<'a>(word: &str, candidates: &[&'a str]) -> Vec<&
     meant
 }
 
-/// Returns ``did you mean `heat`?``, or else a list of the candidates: ``there are `heat` and `humidity` ``.
+/// Returns ``did you mean `heat`?``, or else a list of the candidates: ``choose one of `heat` and `humidity` ``.
 pub fn suggest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
     let candidates: Vec<&str> = candidates.into_iter().collect();
     let meant = likely_candidates(word, &candidates);
     let bare = |name: &str| name.trim_matches(is_curly_quote) == word;
     match meant.as_slice() {
         [one] if *one != word && bare(one) => Some(format!(
-            "the curly quotes are read as a part of the name `{one}`; write straight quotes or none"
+            "the curly quotes are read as part of the name `{one}`; write straight quotes or no quotes"
         )),
         [] => match candidates.as_slice() {
             [] => None,
-            [_] => Some(format!("there is {}", listed(&candidates))),
-            _ => Some(format!("there are {}", listed(&candidates))),
+            [_] => Some(format!("the only one is {}", listed(&candidates))),
+            _ => Some(format!("choose one of {}", listed(&candidates))),
         },
         words => Some(format!("did you mean {}?", either(words))),
     }

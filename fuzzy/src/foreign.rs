@@ -32,7 +32,7 @@ pub(crate) const WORDS: &[(&str, &[&str])] = &[
     ("c", &["mean", "center", "inflection", "constant"]),
     ("centre", &["center", "mean", "inflection"]),
     ("center", &["mean", "inflection"]),
-    ("mean", &["center"]),
+    ("mean", &["center", "mean_of_maxima"]),
     ("sigma", &["sd"]),
     ("sig", &["sd"]),
     ("min", &["range", "minimum"]),
@@ -46,7 +46,7 @@ pub(crate) const WORDS: &[(&str, &[&str])] = &[
     ("umf", &["upper"]),
     ("lmf", &["lower"]),
     // Statistics of a profile.
-    ("average", &["mean"]),
+    ("average", &["mean", "weighted_average"]),
     ("avg", &["mean"]),
     ("stdev", &["std"]),
     ("sd", &["std"]),
@@ -141,7 +141,7 @@ const LETTERS: &[(&str, &[(&str, &str)])] = &[
 const ELSEWHERE: &[(&str, &str)] = &[
     (
         "weight",
-        "write a weight at the end of its rule: `IF ... THEN ... WITH 0.8`",
+        "write the weight at the end of the rule: `IF ... THEN ... WITH 0.8`",
     ),
     (
         "type",
@@ -158,7 +158,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ),
     (
         "<<",
-        "merge keys are not supported: write the keys out, or repeat a single value with `&name` and `*name`",
+        "merge keys are not supported: write out all keys; to reuse a single value, mark it with `&name` and refer to it with `*name`",
     ),
     (
         "implication",

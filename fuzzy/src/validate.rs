@@ -46,7 +46,7 @@ pub(crate) const TERMS_HELP: &str =
 /// Returns the suggestion for missing inputs or outputs; `key` is `inputs` or `outputs`.
 pub(crate) fn missing_help(key: &str) -> String {
     format!(
-        "write each {} below `{key}:`, such as `speed: {{range: [0, 10], partition: [low, high]}}`",
+        "write each {} under `{key}:`, for example `speed: {{range: [0, 10], partition: [low, high]}}`",
         key.trim_end_matches('s')
     )
 }
@@ -126,7 +126,7 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
             Diagnostic::error(
                 "missing-key",
                 spans.outputs_key.clone(),
-                "the rule set has no output",
+                "the rule set has no outputs",
             )
             .help(missing_help("outputs")),
         );
@@ -274,7 +274,7 @@ impl<'m> Validator<'m> {
         for (variable, spans) in variables {
             let here = spans.map_or(0..0, |spans| spans.name.clone());
             if variable.name.is_empty() {
-                let message = String::from("an input or an output has no name");
+                let message = String::from("this input or output has an empty name");
                 self.error(
                     "empty-name",
                     &here,

@@ -310,7 +310,7 @@ fn sorted_mappings_of_earlier_versions_are_still_read() {
     assert_eq!(document.warnings.0.len(), 1);
     text = text.replace("much: 9", "much: 1");
     let reported = text.parse::<Model>().unwrap_err().to_string();
-    assert!(reported.contains("have the same peak 1"), "{reported}");
+    assert!(reported.contains("have the same peak, 1"), "{reported}");
 }
 
 #[test]
@@ -319,7 +319,7 @@ fn steps_survive_formats_without_null_and_with_sorted_keys() {
                 inputs: {dti: {range: [-10, 100], steps: {zero: 0, fine: 36, over: }}}\n\
                 outputs: {risk: {range: [0, 1], partition: [low, high]}}\n\
                 rules: [IF dti IS over THEN risk IS high]\n\
-                allow: [{finding: jump, because: limits of the regulation}]\n";
+                allow: [{finding: jump, because: required by the regulation}]\n";
     let model: Model = text.parse().unwrap();
     assert_eq!(model.inputs[0].step_limits(), Some(vec![0.0, 36.0]));
     let json = serde_json::to_string(&model).unwrap();

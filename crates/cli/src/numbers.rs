@@ -108,7 +108,7 @@ mod tests {
         for (text, error) in [
             (
                 "100ms",
-                "write a number above 0; write the number without its unit: `0.1` if it is in s, `100` if in ms",
+                "write a number above 0; write the number without its unit: `0.1` if the unit is s, `100` if it is ms",
             ),
             (
                 "1%",

@@ -7,7 +7,7 @@ mod share;
 
 use std::{
     fs::File,
-    io::{self, BufRead, BufReader, Cursor, Read},
+    io::{self, BufRead, BufReader, Cursor, IsTerminal, Read},
     path::{Path, PathBuf},
     sync::{
         Arc,
@@ -22,8 +22,9 @@ pub(crate) use header::Header;
 pub(crate) use share::Extent;
 
 use crate::{
+    advice::in_shell,
     failure::{Failure, cannot_read},
-    output::has_ending,
+    output::{has_ending, print_note},
 };
 
 /// Maximum number of bytes of a row, including the comments above it.
@@ -200,6 +201,11 @@ impl Layout {
         column.or(delimiter)
     }
 
+    /// Whether a variable is read from a column of another name.
+    pub(crate) fn renames(&self, variable: &str) -> bool {
+        self.column.iter().any(|(name, _)| name == variable)
+    }
+
     /// Returns the column index of each variable.
     pub(crate) fn columns(&self, names: &[&str], header: &Header) -> Result<Vec<usize>, Failure> {
         if let Some((stray, _)) = self
@@ -229,8 +235,12 @@ impl Layout {
             let near = near
                 .filter(|near| !names.contains(near))
                 .unwrap_or("COLUMN");
-            let help = format!("name the column that contains it with `--column {name}={near}`");
-            header.require(column, &help)
+            let option =
+                |column: &str| format!("--column {}", in_shell(&format!("{name}={column}")));
+            let help = format!("name the column that contains it with `{}`", option(near));
+            header.require_with(column, &help, |meant| {
+                format!("did you mean `{meant}`? then add `{}`", option(meant))
+            })
         };
         names.iter().map(column).collect()
     }
@@ -242,7 +252,10 @@ pub(crate) fn open(path: &Path, delimiter: u8) -> Result<(Header, Reader), Failu
     const BUFFER: usize = 1 << 18;
     let file = path.display().to_string();
     let source: Box<dyn Read + Send> = if path == Path::new("-") {
-        Box::new(std::io::stdin())
+        if io::stdin().is_terminal() {
+            print_note("note: the table is read from the terminal; Ctrl-D ends it");
+        }
+        Box::new(io::stdin())
     } else {
         if path.is_dir() {
             return Err(cannot_read(&file, &std::io::ErrorKind::IsADirectory.into()));

@@ -69,7 +69,7 @@ fn check_verifies_claims_about_outputs() {
 
     let (output, _) = flagred(&["check", "flagred-paper.yaml", "--rising", "wind"], "");
     assert_eq!(output.status.code(), Some(2));
-    assert!(errors(&output).contains("there are `margin` and `spread`"));
+    assert!(errors(&output).contains("choose one of `margin` and `spread`"));
 
     let (output, _) = flagred(&["check", "tipper.yaml", "--rising", "food"], "");
     assert_eq!(output.status.code(), Some(0));

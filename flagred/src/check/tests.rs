@@ -367,7 +367,7 @@ fn the_author_accepts_findings_by_code_and_name() {
     let wrong = format!("{PROFILE}allow: [{{finding: jump, because: x}}]\n");
     let error = wrong.parse::<Profile>().unwrap_err().to_string();
     assert!(
-        error.contains("unknown word `jump` for `finding` of entry 1 of `allow`"),
+        error.contains("entry 1 of `allow`: `jump` is not a warning or note of `check`"),
         "{error}"
     );
 }

@@ -665,7 +665,7 @@ name: credit
 inputs: {dti: {range: [0, 100], steps: {fine: 36, stretched: 43, over: }}}
 outputs: {risk: {range: [0, 1], terms: {low: {constant: 0}, high: {constant: 1}}, defuzzifier: weighted_average}}
 rules: [IF dti IS over THEN risk IS high, IF dti IS NOT over THEN risk IS low]
-allow: [{finding: jump, because: limits of the regulation}, {finding: hole, because: none}]";
+allow: [{finding: jump, because: required by the regulation}, {finding: hole, because: none}]";
     let (report, findings) = report_of(text, &Options::default());
     let codes: Vec<&str> = findings.iter().map(|finding| finding.code).collect();
     assert_eq!(codes, ["unused", "unused", "unneeded-allow"]);
@@ -698,7 +698,7 @@ name: credit
 inputs: {dti: {range: [0, 100], steps: {fine: 36, stretched: 43, over: 100, all: }}}
 outputs: {risk: {range: [0, 3], terms: {a: {constant: 0}, b: {constant: 1}, c: {constant: 2}, d: {constant: 3}}, defuzzifier: weighted_average}}
 rules: [IF dti IS fine THEN risk IS a, IF dti IS stretched THEN risk IS b, IF dti IS over THEN risk IS c, IF dti IS all THEN risk IS d]
-allow: [{finding: jump, because: limits of the regulation}]";
+allow: [{finding: jump, because: required by the regulation}]";
     assert_eq!(report_of(text, &Options::default()).1, []);
     let missing = text.replace("IF dti IS stretched THEN risk IS b, ", "");
     let reported: Vec<_> = report_of(&missing, &Options::default()).1;

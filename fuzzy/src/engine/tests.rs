@@ -157,19 +157,19 @@ fn all_problems_of_a_model_are_reported_at_once() {
         Engine::new(&model).unwrap_err().to_string(),
         @"
     error[duplicate-variable]: the rule set has the variable `x` twice
-      help: inputs and outputs must have different names; rename one of them
+      help: each input and output must have its own name: rename or remove one of the two
     error[wrong-parameter]: term `low` of input `x`: `sd` is -1, but must be greater than 0
       help: write a number greater than 0
     error[wrong-range]: the range of input `x` starts at 1 and ends at 1
       help: write a maximum that is above the minimum
-    error[value-outside-range]: the value 101 lies outside the range of output `y`
+    error[value-outside-range]: the value 101 is outside the range of output `y`
       help: write a value from 0 to 100
     error[weight-outside-range]: rule 1: the weight NaN is outside [0, 1]
       help: a weight is a number from 0 to 1
     error[unknown-term]: rule 3: input `x` has no term `middle`
-      help: there are `low` and `high`
+      help: choose one of `low` and `high`
     error[unknown-term]: rule 3: output `y` has no term `none`
-      help: there are `small` and `large`
+      help: choose one of `small` and `large`
     "
     );
 }

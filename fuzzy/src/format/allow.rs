@@ -1,11 +1,11 @@
-//! The list of findings that an author accepts: `allow: [{finding: jump, because: limits of the regulation}]`.
+//! The list of findings that an author accepts: `allow: [{finding: jump, because: required by the regulation}]`.
 
 use alloc::{format, vec::Vec};
 use core::ops::Range;
 
 use super::optional_text;
 use crate::{
-    diagnostic::{Diagnostic, all_of, duplicate},
+    diagnostic::{Diagnostic, all_of, duplicate, quoted},
     model::AllowedFinding,
     tree::Node,
 };
@@ -38,7 +38,7 @@ pub(super) fn read(
     spans: &mut Vec<Range<usize>>,
     findings: &mut Vec<Diagnostic>,
 ) -> Vec<AllowedFinding> {
-    let example = "{finding: jump, because: limits of the regulation}";
+    let example = "{finding: jump, because: required by the regulation}";
     AllowedFinding::read(node, &CODES, example, spans, findings)
 }
 
@@ -86,21 +86,24 @@ fn entry(
     let what = format!("entry {number} of `allow`");
     let fields = node.fields(&what, &KEYS, &format!("write `{example}`"), findings)?;
     let code = format!("name a finding of `check`: `{example}`");
-    let reason = "write why it is accepted: `because: limits of the regulation`";
+    let reason =
+        "write why the finding is accepted, for example `because: required by the regulation`";
     let code = fields.require("finding", &code, findings).and_then(|node| {
         let words: Vec<(&str, &'static str)> = codes.iter().map(|code| (*code, *code)).collect();
         let before = findings.len();
         let code = node.choice(&format!("`finding` of {what}"), &words, findings);
-        if let Some(finding) = findings.get_mut(before)
-            && !finding
-                .help
-                .as_deref()
-                .is_some_and(|help| help.starts_with("did you mean"))
-        {
-            finding.help = Some(format!(
-                "`allow` accepts only these warnings and notes, no errors: {}",
-                all_of(codes)
-            ));
+        if let (Some(finding), Some(word)) = (findings.get_mut(before), node.as_text()) {
+            finding.message = format!(
+                "{what}: `{}` is not a warning or note of `check`",
+                quoted(word)
+            );
+            let is_misspelt = |help: &String| help.starts_with("did you mean");
+            if !finding.help.as_ref().is_some_and(is_misspelt) {
+                finding.help = Some(format!(
+                    "`allow` accepts warnings and notes, but not errors; choose one of {}",
+                    all_of(codes)
+                ));
+            }
         }
         code
     });
@@ -118,7 +121,7 @@ fn entry(
     let node = fields.require("because", reason, findings)?;
     let because = optional_text(&fields, "because", findings)?;
     if because.trim().is_empty() {
-        let message = format!("`because` of {what} is empty");
+        let message = format!("{what} has an empty `because`");
         findings.push(Diagnostic::error("missing-key", node.span.clone(), message).help(reason));
         return None;
     }

@@ -66,8 +66,8 @@ fn one(
     };
     if KEYS.contains(&entry.key) && !matches!(entry.value.value, Value::Mapping(_)) {
         // The keys of a block are directly below `blocks`, without the name of the block.
-        let message = "`blocks` has the keys of a block, but not its name";
-        let help = "write the name of the block above its keys, and indent the keys: `blocks: {main: {rules: [IF ... THEN ...]}}`";
+        let message = "the keys of a block must be under its name, not directly under `blocks`";
+        let help = "nest the keys under the name of a block, for example `blocks: {main: {rules: [IF ... THEN ...]}}`";
         if !findings.iter().any(|finding| finding.message == message) {
             let finding = Diagnostic::error("wrong-type", entry.key_span.clone(), message);
             findings.push(finding.help(help));
@@ -97,7 +97,7 @@ fn one(
         block.activation =
             activation(&of, node, &mut here.activation, findings).unwrap_or(block.activation);
     }
-    let help = "write `rules:` and a list of rules: `- IF input IS term THEN output IS term`";
+    let help = "write `rules:` followed by a list of rules, such as `- IF input IS term THEN output IS term`";
     let rules = fields.require("rules", help, findings);
     let read = rules.and_then(|node| rules::read(node, model, spans, findings));
     spans.rules_unread |= read.is_none();
@@ -133,6 +133,14 @@ pub(super) fn activation(
                 true => format!("write how many rules may fire: `{{{word}: 1}}`"),
                 false => HELP.into(),
             });
+            if keys.contains(&word) {
+                let value = if word == "threshold" {
+                    "comparison"
+                } else {
+                    "number of rules"
+                };
+                finding.message = format!("{what} is `{word}`, which needs a {value}");
+            }
         }
         return method;
     };
@@ -140,7 +148,10 @@ pub(super) fn activation(
     let fields = node.fields(what, &keys, HELP, findings)?;
     let [method] = fields.entries() else {
         if findings.len() == before {
-            let message = format!("{what} has {} methods", pairs.len());
+            let message = format!(
+                "{what} has {} methods, but only one is allowed",
+                pairs.len()
+            );
             let methods = pairs
                 .iter()
                 .map(|(key, value)| format!("`{{{}: {}}}`", key.to_line(), value.to_line()));
@@ -150,7 +161,7 @@ pub(super) fn activation(
         }
         return None;
     };
-    let of = format!("`{}` of {what}", method.key);
+    let of = format!("`{}` in {what}", method.key);
     match method.key {
         "first" | "last" => {
             let (rules, at_least) = counted(&of, method.value, findings)?;
@@ -201,7 +212,7 @@ fn counted(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<(u
 fn threshold(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<Activation> {
     let number = node.as_number_text().unwrap_or("0.3");
     let help = &format!(
-        "write `{{at_least: {number}}}`, or `below`, `at_most`, `equal`, `not_equal` or `above` in place of `at_least`"
+        "write `{{at_least: {number}}}`, or replace `at_least` by `below`, `at_most`, `equal`, `not_equal` or `above`"
     );
     let Value::Mapping(_) = &node.value else {
         let finding = node.unexpected(&format!("a comparison for {what}"));

@@ -174,7 +174,7 @@ pub(super) fn uncertain_gaussian(
         return None;
     }
     let before = findings.len();
-    let what = format!("the gaussian of {what}");
+    let what = format!("`gaussian` of {what}");
     let fields = node.fields(&what, &["mean", "sd"], HELP, findings)?;
     let mut ends = |key: &str| {
         let node = fields.require(key, HELP, findings)?;
@@ -459,12 +459,12 @@ mod tests {
         );
         refused(
             "terms: {warm: {gaussian: {mean: [22, 18], sd: 3}}}",
-            "`mean` of the gaussian of term `warm` of input `x` begins at 22 and ends at 18",
+            "`mean` of `gaussian` of term `warm` of input `x` begins at 22 and ends at 18",
             "write the minimum first, then the maximum",
         );
         refused(
             "terms: {warm: {gaussian: {mean: 22, sd: [0, 1]}}}",
-            "`sd` of the gaussian of term `warm` of input `x` is 0, but must be greater than 0",
+            "`sd` of `gaussian` of term `warm` of input `x` is 0, but must be greater than 0",
             "write for example `sd: [1, 2]`",
         );
         refused(

@@ -118,7 +118,7 @@ fn mapping(what: &str, list: &Node, findings: &mut Vec<Diagnostic>) -> Option<No
     let mut entries = Vec::with_capacity(items.len());
     for (i, item) in items.iter().enumerate() {
         let entry = format!("entry {} of {what}", i + 1);
-        let help = "write its name: `- name: ...`, and below that its other keys";
+        let help = "begin the entry with `- name: ...`, followed by its other keys";
         let Value::Mapping(fields) = &item.value else {
             let finding = item.unexpected(&format!("a mapping with a `name` for {entry}"));
             findings.push(finding.help(help));
@@ -139,7 +139,7 @@ fn mapping(what: &str, list: &Node, findings: &mut Vec<Diagnostic>) -> Option<No
                 {
                     let text = name.as_text().unwrap_or_default();
                     findings.push(finding.help(format!(
-                        "remove the `-` before `{text}:`, and indent the keys below it"
+                        "remove the `-` before `{text}:`, and indent its keys under it"
                     )));
                     entries.push((name.clone(), with(item, Value::Mapping(keys.to_vec()))));
                     continue;
@@ -182,9 +182,9 @@ fn dashes(what: &str, items: &[Node]) -> Option<(Vec<(Node, Node)>, Diagnostic)>
     });
     let entries: Vec<(Node, Node)> = entries.collect::<Option<_>>()?;
     let (name, _) = entries.first()?;
-    let message = format!("the names of {what} begin with `-`");
+    let message = format!("the names under {what} must not have a `-` before them");
     let help = format!(
-        "remove the `-`, and indent the keys below the name: `{}:`",
+        "remove the `-` before each name, such as `{}:`, and indent the keys under the name",
         name.as_text().unwrap_or_default()
     );
     let finding = Diagnostic::error("wrong-type", name.span.clone(), message);

@@ -235,7 +235,7 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
         spans.provenance = entry.key_span.clone();
         model.provenance = provenance::read(entry.value, findings);
     }
-    let rules_help = "write `rules:` and a list of rules: `- IF input IS term THEN output IS term`; to learn the rules from data, write `rules: []`";
+    let rules_help = "write `rules:` followed by a list of rules, such as `- IF input IS term THEN output IS term`; to learn the rules from data, write `rules: []`";
     let key = |key| {
         fields
             .entry(key)
@@ -253,8 +253,8 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
         return Some(model);
     };
     if fields.entry("rules").is_some() {
-        let message = "the rule set has both `rules` and `blocks`";
-        let help = "move the rules of `rules` into a block and remove `rules`; if there are blocks, all rules are in blocks";
+        let message = "a rule set can have `rules` or `blocks`, but not both";
+        let help = "move all rules of `rules` into a block, and remove `rules`";
         findings.push(Diagnostic::error("duplicate-key", key("blocks"), message).help(help));
         spans.rules_unread = true;
     }
@@ -279,16 +279,16 @@ fn outdented(fields: &Fields<'_>) -> Option<Diagnostic> {
         .last()?;
     let kind = section.key.trim_end_matches('s');
     let message = format!(
-        "unknown key `{}` at the top level; it looks like an {kind}",
+        "unknown key `{0}` at the top level; `{0}` looks like an {kind}",
         stray.key
     );
     let help = match &section.value.value {
         Value::Mapping(pairs) => {
             let (first, _) = pairs.first()?;
-            format!("indent `{}:` like `{}:`", stray.key, first.as_text()?)
+            format!("align `{}:` with `{}:`", stray.key, first.as_text()?)
         }
         _ if section.value.is_null() => format!(
-            "indent `{}:` and the lines below it: each {kind} is indented below `{}:`",
+            "indent `{}:` and its keys: each {kind} is nested under `{}:`",
             stray.key, section.key
         ),
         _ => return None,
@@ -306,9 +306,12 @@ fn other_first_key(fields: &Fields<'_>) -> Option<Diagnostic> {
     {
         return None;
     }
-    let message = format!("a rule set begins with `fuzzy: 1`, not `{}: 1`", first.key);
+    let message = format!(
+        "a rule set must begin with `fuzzy: 1`, not `{}: 1`",
+        first.key
+    );
     let finding = Diagnostic::error("unknown-key", first.key_span.clone(), message);
-    Some(finding.help("write `fuzzy: 1` in its place"))
+    Some(finding.help("write `fuzzy: 1` instead"))
 }
 
 /// Returns a finding if the outputs are below `inputs`, because `outputs:` is missing above them or both were exchanged.
@@ -336,9 +339,9 @@ fn outputs_among_inputs(fields: &Fields<'_>) -> Option<Diagnostic> {
         && !outputs.iter().any(|output| keys_of_outputs(&output));
     let help = match () {
         () if fields.get("outputs").is_none() && !fields.misspells("outputs") => {
-            format!("write a line `outputs:` above `{text}:`")
+            format!("add the line `outputs:` above `{text}:`")
         }
-        () if all_exchanged => "exchange the keys `inputs` and `outputs`".into(),
+        () if all_exchanged => "swap the keys `inputs` and `outputs`".into(),
         () => return None,
     };
     let message = format!("input `{text}` has keys that only outputs can have");

@@ -70,7 +70,12 @@ pub(super) fn peaks_in_list(items: &[Node]) -> Option<String> {
         _ => None,
     });
     let peaks: Vec<String> = peaks.collect::<Option<_>>()?;
-    (!peaks.is_empty()).then(|| format!("write braces: `{{{}}}`", peaks.join(", ")))
+    (!peaks.is_empty()).then(|| {
+        format!(
+            "write braces in place of brackets: `{{{}}}`",
+            peaks.join(", ")
+        )
+    })
 }
 
 /// Returns a suggestion for a `partition` that contains membership functions, or intervals such as `{cold: [0, 10],
@@ -80,7 +85,8 @@ pub(super) fn other_terms(entries: &[Entry<'_>]) -> Option<String> {
         .iter()
         .all(|entry| matches!(entry.value.value, Value::Mapping(_)))
     {
-        return (!entries.is_empty()).then(|| "write `terms` in place of `partition`".into());
+        return (!entries.is_empty())
+            .then(|| "for membership functions, write `terms` in place of `partition`".into());
     }
     if let Some(terms) = corners(entries) {
         return Some(format!(
@@ -106,7 +112,7 @@ pub(super) fn other_terms(entries: &[Entry<'_>]) -> Option<String> {
         });
     let steps: Vec<String> = steps.collect();
     Some(format!(
-        "for limits in place of peaks write `steps: {{{}}}`",
+        "for intervals, write the upper limit of each term except the last: `steps: {{{}}}`",
         steps.join(", ")
     ))
 }
@@ -138,7 +144,7 @@ pub(super) fn without_peaks(entries: &[Entry<'_>]) -> Option<String> {
     let names: Vec<&str> = entries.iter().map(|entry| entry.key).collect();
     (are_bare && !names.is_empty()).then(|| {
         let names = names.join(", ");
-        format!("for even spacing write a list: `[{names}]`")
+        format!("give each term a peak, or write a list for evenly spaced peaks: `[{names}]`")
     })
 }
 

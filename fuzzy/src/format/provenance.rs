@@ -18,7 +18,7 @@ pub(super) const DATA_KEYS: [&str; 2] = ["file", "sha256"];
 pub(super) const LOSS_KEYS: [&str; 3] = ["name", "before", "after"];
 
 pub(super) fn read(node: &Node, findings: &mut Vec<Diagnostic>) -> Vec<ProvenanceStep> {
-    let help = "write `provenance: [{command: by hand}]`, with an entry for each step";
+    let help = "write an entry for each step: `provenance: [{command: tune rules.yaml}]`";
     let items = node
         .items("`provenance`", help, findings)
         .unwrap_or_default();
@@ -29,7 +29,7 @@ pub(super) fn read(node: &Node, findings: &mut Vec<Diagnostic>) -> Vec<Provenanc
 
 fn step(node: &Node, number: usize, findings: &mut Vec<Diagnostic>) -> Option<ProvenanceStep> {
     let what = format!("step {number} of the provenance");
-    let help = "write the command that made the rule set: `{command: by hand}`";
+    let help = "write the command that made the rule set: `{command: tune rules.yaml}`";
     let fields = node.fields(&what, &KEYS, help, findings)?;
     fields.require("command", help, findings);
     let text = |node: &Node, key: &str, findings: &mut Vec<Diagnostic>| {

@@ -31,6 +31,9 @@ pub(super) fn read(
             .is_some_and(|text| text.trim_start().starts_with("- "));
         findings.push(finding.help(match &node.value {
             _ if is_list => "remove the `|` or `>` after `rules:`: it makes a text of the list",
+            Value::Scalar(text) if text.text.trim_end().contains('\n') => {
+                "remove the `|` or `>` after `rules:`, and begin the line of each rule with `- IF`"
+            }
             Value::Mapping(_) => "begin the line of each rule with `- IF`; rules have no names",
             _ => "begin the line of each rule with `- IF`",
         }));
@@ -68,7 +71,7 @@ pub(super) fn read(
                 before + i + 1,
                 parts.len()
             );
-            let help = format!("write it in one entry: `- {}`", parts.join(" "));
+            let help = format!("write it as one entry: `- {}`", parts.join(" "));
             let finding = Diagnostic::error("rule-syntax", item.span.clone(), message);
             findings.push(finding.help(help));
             spans.rules_unread = true;
@@ -159,12 +162,12 @@ fn one(
     let fields = node.fields(&what, &KEYS, HELP, findings)?;
     if let Some(rule) = of_parts(&fields) {
         fields.withdraw(findings);
-        let message = format!("{what} has its parts as keys");
+        let message = format!("the parts of {what} are written as separate keys");
         let finding = Diagnostic::error("unknown-key", node.span.clone(), message);
-        findings.push(finding.help(format!("write it as one text: `- {rule}`")));
+        findings.push(finding.help(format!("write the whole rule as text: `- {rule}`")));
         return None;
     }
-    let help = "write `{rule: IF input IS term THEN output IS term, confidence: 0.8}`";
+    let help = "add the key `rule`, such as `{rule: IF input IS term THEN output IS term, confidence: 0.8}`";
     let text = fields.require("rule", help, findings);
     if let Some(node) = fields.get("confidence") {
         spans.confidence = node.span.clone();
@@ -175,7 +178,7 @@ fn one(
         .and_then(|node| node.whole(&format!("the support of {what}"), 0, findings));
     found.note = optional_text(&fields, "note", findings);
     if let Some(node) = fields.get("against") {
-        let what = format!("an entry of `against` of {what}");
+        let what = format!("an `against` entry of {what}");
         let help = format!(
             "write the term, its degree and the number of rows: `against: [{REJECTED_EXAMPLE}]`"
         );
@@ -242,8 +245,8 @@ fn colon(what: &str, key: &Node, value: &Node) -> Option<Diagnostic> {
     } else if is_rule(key) {
         (format!("{what} contains a colon"), remark.as_str())
     } else if is_rule(value) && !matches!(&key.value, Value::Scalar(key) if key.text == "rule") {
-        let help = "rules have no names or numbers; write `- IF ... THEN ...`";
-        (format!("{what} starts with a name"), help)
+        let help = "write `- IF ... THEN ...`, without a name or number";
+        (format!("{what} starts with a name, not with `IF`"), help)
     } else {
         return None;
     };

@@ -82,7 +82,7 @@ pub(super) fn read(
             && !start.quoted
         {
             let rest = second.key;
-            let message = "in braces, a comma ends the formula";
+            let message = "the formula contains a comma, which ends it within braces";
             let help = format!(
                 "put the formula in quotes: `function: \"{}, {rest}\"`",
                 start.text
@@ -140,7 +140,7 @@ fn without_brackets(shape: &Entry<'_>, fields: &Fields<'_>) -> Option<Diagnostic
     let last = rest.last()?;
     let numbers = rest.iter().map(|entry| entry.key.trim_end_matches(')'));
     let numbers: Vec<&str> = core::iter::once(first).chain(numbers).collect();
-    let message = format!("the numbers of the {} are not in brackets", form.name);
+    let message = format!("the numbers of `{}` are not in brackets", form.name);
     let span = shape.key_span.start..last.key_span.end;
     let help = format!("write `{}: [{}]`", form.name, numbers.join(", "));
     Some(Diagnostic::error("wrong-type", span, message).help(help))
@@ -158,11 +158,11 @@ fn by_form(
     let mut read = |parameter: &str, node: &Node, findings: &mut Vec<Diagnostic>| {
         spans.parameters.push(node.span.clone());
         spans.numbers.push(node.span.clone());
-        values.extend(node.finite(&format!("`{parameter}` of the {name}"), findings));
+        values.extend(node.finite(&format!("`{parameter}` of `{name}`"), findings));
     };
     match &node.value {
         Value::Mapping(_) => {
-            let what = format!("the {name}");
+            let what = format!("`{name}`");
             let before = findings.len();
             let fields = node.fields(&what, &names, "", findings)?;
             let help = spelling(form);
@@ -195,9 +195,9 @@ fn by_form(
         }
         _ => {
             let expected = if form.as_list() {
-                format!("{} numbers for the {name}", names.len())
+                format!("{} numbers for `{name}`", names.len())
             } else {
-                format!("named parameters for the {name}")
+                format!("named parameters for `{name}`")
             };
             let mut finding = node.unexpected(&expected);
             let numbers: Vec<&str> = match &node.value {
@@ -208,7 +208,7 @@ fn by_form(
                 && form.as_list()
             {
                 finding.message = format!(
-                    "the {name} takes {} numbers, not {}",
+                    "`{name}` needs {} numbers, but has {}",
                     names.len(),
                     items.len()
                 );
@@ -227,7 +227,7 @@ fn by_form(
                         false => format!(" or `{{{first}: {b}, {second}: {a}}}`"),
                     };
                     Some(format!(
-                        "write the parameters by name, since programs differ in their order: `{name}: {{{first}: {a}, {second}: {b}}}`{exchanged}"
+                        "name the parameters, because their order differs between programs: `{name}: {{{first}: {a}, {second}: {b}}}`{exchanged}"
                     ))
                 }
                 _ => None,
@@ -251,7 +251,7 @@ fn completed(form: &ShapeForm, found: &[Option<&Node>]) -> String {
         .map(|(name, node)| format!("{name}: {}", node.map_or("1".into(), Node::to_line)))
         .collect();
     format!(
-        "write all parameters, such as `{}: {{{}}}`",
+        "write all parameters, for example `{}: {{{}}}`",
         form.name,
         named.join(", ")
     )
@@ -263,7 +263,7 @@ fn other_parameters(form: &ShapeForm, fields: &Fields<'_>) -> Diagnostic {
     let unknown: Vec<&Entry<'_>> = fields.unknown().collect();
     let others: Vec<&str> = unknown.iter().map(|entry| entry.key).collect();
     let message = format!(
-        "the {} takes {}, not {}",
+        "`{}` takes {}, not {}",
         form.name,
         all_of(&names),
         all_of(&others)
@@ -322,7 +322,7 @@ fn spelling(form: &ShapeForm) -> String {
         _ => {
             let named: Vec<String> = names.iter().map(|p| format!("{p}: ...")).collect();
             format!(
-                "write the parameters by name, since programs differ in their order: `{}: {{{}}}`",
+                "name the parameters, because their order differs between programs: `{}: {{{}}}`",
                 form.name,
                 named.join(", ")
             )
@@ -331,7 +331,7 @@ fn spelling(form: &ShapeForm) -> String {
 }
 
 const POINTS_HELP: &str =
-    "write each point as a position and a degree: `piecewise: [[x, degree], [x, degree]]`";
+    "write each point as a pair of x and degree: `piecewise: [[x, degree], [x, degree]]`";
 
 fn points(
     term: &str,
@@ -430,7 +430,7 @@ fn linear(
     {
         Some(formula) => format!("for a formula, write `function: {formula}`"),
         None => {
-            "write a coefficient for each input and a constant: `linear: {temperature: 2, constant: 5}`"
+            "write a constant and a coefficient for each input: `linear: {temperature: 2, constant: 5}`"
                 .into()
         }
     };

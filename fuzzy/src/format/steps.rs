@@ -10,7 +10,7 @@ use crate::{
 };
 
 const HELP: &str =
-    "write the limit of each term; the last term has none: `steps: {low: 10, medium: 20, high: }`";
+    "give each term except the last its upper limit: `steps: {low: 10, medium: 20, high: }`";
 
 /// Reads the terms of a variable that are defined by limits.
 pub(super) fn read(
@@ -22,7 +22,9 @@ pub(super) fn read(
 ) {
     spans.steps = node.span.clone();
     let Value::Mapping(_) = &node.value else {
-        let finding = node.unexpected(&format!("terms with limits for the steps of {what}"));
+        let finding = node.unexpected(&format!(
+            "a mapping from terms to their upper limits for `steps` of {what}"
+        ));
         let help = of_names(node, variable);
         findings.push(finding.help(help.unwrap_or_else(|| HELP.into())));
         return;
@@ -92,9 +94,7 @@ fn of_names(node: &Node, variable: &Variable) -> Option<String> {
         .collect();
     (width > 0.0 && width.is_finite() && !terms.is_empty()).then(|| {
         let terms = terms.join(", ");
-        format!(
-            "write the limit of each term except the last, such as `steps: {{{terms}, {last}: }}`"
-        )
+        format!("give each term except the last its upper limit: `steps: {{{terms}, {last}: }}`")
     })
 }
 
@@ -235,7 +235,7 @@ fn check(
         findings.push(Diagnostic::error(code, span, message).help(help));
     };
     if steps.len() < 2 {
-        let message = format!("the steps of {what} have fewer than two terms");
+        let message = format!("the steps of {what} need at least two terms");
         let help =
             "add a term: each term except the last has a limit, such as `steps: {low: 10, high: }`";
         wrong(node.span.clone(), "wrong-parameter", message, help);

@@ -110,17 +110,21 @@ fn entries<'n>(
         && is_nameless
         && entries.iter().all(|entry| keys.contains(&entry.key))
     {
-        let message = format!("`{key}` has the keys of an {kind}, but not its name");
+        let message =
+            format!("the keys of an {kind} must be under its name, not directly under `{key}`");
         let help = format!(
-            "write the name of the {kind} above these keys, and indent the keys: `{key}: {{speed: {{range: [0, 10], ...}}}}`"
+            "nest the keys under the name of the {kind}, for example `{key}: {{speed: {{range: [0, 10], ...}}}}`"
         );
         findings.push(Diagnostic::error("missing-key", first.key_span.clone(), message).help(help));
         return None;
     }
     let of_rule_set = |entry: &&Entry<'_>| super::KEYS.contains(&entry.key) && !has_range(entry);
     if let Some(stray) = entries.iter().find(of_rule_set) {
-        let message = format!("`{}`, a key of the rule set, is below `{key}`", stray.key);
-        let help = format!("indent `{}:` like `{key}:`", stray.key);
+        let message = format!(
+            "`{}` must be at the top level, not under `{key}`",
+            stray.key
+        );
+        let help = format!("align `{}:` with `{key}:`", stray.key);
         let finding = Diagnostic::error("unknown-key", stray.key_span.clone(), message);
         findings.push(finding.help(help));
         return None;
@@ -153,11 +157,11 @@ fn one<'n>(
     if let Some(nested) = nested {
         findings.truncate(before);
         let message = format!(
-            "unknown key `{}` in {what}; it looks like an {kind}",
+            "unknown key `{0}` in {what}; `{0}` looks like an {kind}",
             nested.key
         );
         let finding = Diagnostic::error("unknown-key", nested.key_span.clone(), message);
-        findings.push(finding.help(format!("indent `{}:` like `{}:`", nested.key, entry.key)));
+        findings.push(finding.help(format!("align `{}:` with `{}:`", nested.key, entry.key)));
         spans.names_unread = true;
     }
     drop(unknown);
@@ -225,7 +229,9 @@ fn samples(
     findings: &mut Vec<Diagnostic>,
 ) -> Option<Sampling> {
     let number = node.as_number_text().unwrap_or("1000");
-    let help = &format!("write `samples: {{midpoint: {number}}}` or `{{trapezoid: {number}}}`");
+    let help = &format!(
+        "write a whole number, such as `samples: {{midpoint: {number}}}` or `samples: {{trapezoid: {number}}}`"
+    );
     let Value::Mapping(_) = &node.value else {
         let finding = node.unexpected("a sampling rule and its number of samples");
         findings.push(finding.help(help));
@@ -426,7 +432,10 @@ fn range(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<(f64
         return None;
     };
     let [low, high] = ends.as_slice() else {
-        let message = format!("the range of {what} takes 2 numbers, not {}", ends.len());
+        let message = format!(
+            "the range of {what} must be a list of 2 numbers, but has {}",
+            ends.len()
+        );
         let help = Node::list_advice(ends, 2).or_else(|| match ends.as_slice() {
             [only] => two_numbers(only).map(both).or_else(|| one_number(only)),
             numbers => smallest_and_largest(numbers).map(both),
@@ -435,7 +444,7 @@ fn range(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<(f64
         findings.push(Diagnostic::error("wrong-type", node.span.clone(), message).help(help));
         return None;
     };
-    let end = format!("the range of {what}");
+    let end = format!("each end of the range of {what}");
     let mut read = |node: &Node, extreme: &str| {
         let before = findings.len();
         let number = node.finite(&end, findings);
@@ -576,8 +585,7 @@ fn partition(
     match &node.value {
         Value::List(items) => {
             if let Some(help) = peaks_in_list(items) {
-                let finding =
-                    node.unexpected(&format!("peaks in braces for the partition of {what}"));
+                let finding = node.unexpected(&format!("a mapping for the partition of {what}"));
                 findings.push(finding.help(help));
                 return;
             }
@@ -603,15 +611,15 @@ fn partition(
             let entries = node.entries(what, "term", PARTITION_HELP, findings);
             let mut entries = entries.unwrap_or_default();
             if let Some(help) = colons_without_space(&entries) {
-                let message = format!(
-                    "a name and its peak in the partition of {what} are not separated by `: `"
-                );
+                let message =
+                    format!("a space is missing after a colon in the partition of {what}");
                 let span = node.span.clone();
                 findings.push(Diagnostic::error("yaml-syntax", span, message).help(help));
                 return;
             }
             if let Some(help) = without_peaks(&entries).or_else(|| other_terms(&entries)) {
-                let message = format!("the partition of {what} has no peaks");
+                let message =
+                    format!("the partition of {what} needs a number for each term, its peak");
                 let span = node.span.clone();
                 findings.push(Diagnostic::error("wrong-type", span, message).help(help));
                 spans.terms = term_spans(entries.iter().map(|entry| &entry.key_span));
@@ -622,7 +630,7 @@ fn partition(
             }
             let mut found = Vec::new();
             for entry in &entries {
-                let peak = format!("the peak of `{}` of {what}", entry.key);
+                let peak = format!("the peak of term `{}` of {what}", entry.key);
                 let before = findings.len();
                 found.extend(entry.value.finite(&peak, findings));
                 if matches!(entry.value.value, Value::Mapping(_) | Value::List(_))
@@ -679,10 +687,10 @@ fn partition(
         peaks = None;
     }
     if count < 2 {
-        let message = format!("the partition of {what} has fewer than two terms");
+        let message = format!("the partition of {what} needs at least two terms");
         findings.push(
             Diagnostic::error("wrong-parameter", node.span.clone(), message).help(
-                "add a term, or write the only one with its membership function under `terms`",
+                "add a term, or write a single term with its membership function under `terms`",
             ),
         );
     }
@@ -740,7 +748,7 @@ fn rising(
             && peak <= least
         {
             let message =
-                format!("the terms `{other}` and `{name}` of {what} have the same peak {peak}");
+                format!("the terms `{other}` and `{name}` of {what} have the same peak, {peak}");
             findings.push(
                 Diagnostic::error("inverted-parameters", node.span.clone(), message)
                     .help("give each term of a partition a different peak"),
@@ -751,7 +759,7 @@ fn rising(
         if has_range && (peak < variable.low || peak > variable.high) {
             let (low, high) = (variable.low, variable.high);
             let message = format!(
-                "the peak {peak} of `{name}` lies outside the range [{low}, {high}] of {what}"
+                "the peak {peak} of `{name}` is outside the range [{low}, {high}] of {what}"
             );
             findings.push(
                 Diagnostic::error("term-outside-range", node.span.clone(), message)

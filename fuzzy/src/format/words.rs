@@ -78,7 +78,7 @@ pub(super) fn operators(
             .then_some("or"),
     };
     let help = match key {
-        Some(key) => format!("write which operator it is: `operators: {{{key}: {word}}}`"),
+        Some(key) => format!("name the operator: `operators: {{{key}: {word}}}`"),
         None => "write `operators: {and: product, or: maximum}`, with the operators that differ from the defaults".into(),
     };
     let fields = node.fields(what, keys, &help, findings)?;

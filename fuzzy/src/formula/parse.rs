@@ -378,8 +378,7 @@ fn quoted(rest: &str, quote: char) -> ParseResult<'_, String> {
 const HEDGES: [&str; 4] = ["very", "somewhat", "extremely", "seldom"];
 
 /// The suggestion for conditional expressions such as `c ? a : b`, which formulas do not support.
-const CONDITIONAL_HELP: &str =
-    "write `(condition) * a + (1 - (condition)) * b`: a condition is 1 if it is true, otherwise 0";
+const CONDITIONAL_HELP: &str = "for `a` if a condition is true and `b` otherwise, write `(condition) * a + (1 - (condition)) * b`: a condition is 1 if true, 0 if false";
 
 /// Returns a suggestion if a number with `%` is before this position, as in `50% * x`.
 fn percent(text: &str, start: usize) -> Option<String> {
@@ -389,7 +388,7 @@ fn percent(text: &str, start: usize) -> Option<String> {
     let percent = number.get(from.len()..)?.parse::<f64>().ok()?;
     let fraction = percent / 100.0;
     Some(format!(
-        "a number has no `%`: write `{fraction}` for {percent} %"
+        "a number cannot be followed by `%`: write `{fraction}` for {percent} %"
     ))
 }
 
@@ -457,7 +456,8 @@ impl FormulaMistake<'_> {
                 error(found.len(), message).help(help)
             }
             FormulaMistakeKind::Operator => {
-                let message = format!("expected an operator or the end, found {shown}");
+                let message =
+                    format!("expected an operator or the end of the formula, found {shown}");
                 let before = text.get(..start).unwrap_or("");
                 let whole = before.trim_end_matches(|c: char| c.is_ascii_digit()).len();
                 let end = rest.find(' ').unwrap_or(rest.len());
@@ -473,11 +473,11 @@ impl FormulaMistake<'_> {
                 }
                 let help = match found {
                     "=" if is_plain_name(text.get(..start).unwrap_or("").trim()) => {
-                        "write the right side only, or `==` to compare"
+                        "write only the right-hand side, or use `==` to compare"
                     }
                     "?" | ":" => CONDITIONAL_HELP,
                     _ if before.is_some_and(|word| HEDGES.contains(&word)) => {
-                        "a formula has no hedges: write one in a rule, `IF input IS very term`"
+                        "formulas cannot contain hedges: write the hedge in a rule, such as `IF input IS very term`"
                     }
                     "=" | "===" => "write `==` to compare",
                     "**" => "write `^` for a power",
@@ -498,7 +498,7 @@ impl FormulaMistake<'_> {
                         "write `*` to multiply"
                     }
                     _ if found.starts_with(|c: char| in_name(c)) => {
-                        "write `*` to multiply; put a name of several words in quotes"
+                        "write `*` to multiply; put a name with spaces in quotes"
                     }
                     _ => "operators are `+ - * / % ^`, `< <= > >= == !=`, `and` and `or`",
                 };

@@ -351,7 +351,7 @@ fn cycle_error(steps: &[CycleStep<'_>]) -> Diagnostic {
             },
         ] => (
             format!(
-                "rule {} reads `{name}`, which the rules of its block conclude; with an `activation`, the rules of a block are evaluated together",
+                "rule {} reads `{name}`, an output of its own block, but all rules of a block with `activation` are evaluated together",
                 rule + 1
             ),
             format!("remove `activation`, or move the rules that read `{name}` into a later block"),
@@ -364,7 +364,7 @@ fn cycle_error(steps: &[CycleStep<'_>]) -> Diagnostic {
             },
         ] => (
             format!(
-                "an output cannot read itself: `{name}` in rule {}",
+                "an output cannot read itself, but rule {} has `{name}` in its condition and its conclusion",
                 rule + 1
             ),
             format!(
@@ -376,15 +376,15 @@ fn cycle_error(steps: &[CycleStep<'_>]) -> Diagnostic {
             format!("remove `{name}` from the term that reads it"),
         ),
         steps => {
-            let message = format!("outputs read one another in a circle: {}", path.join(", "));
+            let message = format!("circular dependency between outputs: {}", path.join(", "));
             let of_rules = steps.iter().filter(|step| step.rule.is_some()).count();
             let help = match of_rules {
-                0 => "break the circle: remove one of these outputs from the term that reads it",
+                0 => "to break the cycle, remove one of these outputs from the term that reads it",
                 _ if of_rules == steps.len() => {
-                    "break the circle: remove one of these outputs from a condition, or let one of these rules conclude a new output"
+                    "to break the cycle, remove one of these outputs from a condition, or write a new output in the conclusion of one of these rules"
                 }
                 _ => {
-                    "break the circle: remove one of these outputs from the condition or the term that reads it"
+                    "to break the cycle, remove one of these outputs from the condition or the term that reads it"
                 }
             };
             (message, help.into())

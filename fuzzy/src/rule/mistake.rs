@@ -173,10 +173,10 @@ impl RuleMistake<'_> {
                         Some(format!("write `{word}` in place of `{found}`"))
                     }
                     _ if found.eq_ignore_ascii_case("IF") => {
-                        Some("a rule has one `IF`: write `AND` in place of the second `IF`".into())
+                        Some("a rule has only one `IF`: write `AND` in place of the second `IF`".into())
                     }
                     _ if found.eq_ignore_ascii_case("XOR") => Some(
-                        "there is no `XOR`: write `(a AND NOT b) OR (NOT a AND b)` with the conditions a and b"
+                        "rules have no `XOR`: for conditions a and b, write `(a AND NOT b) OR (NOT a AND b)`"
                             .into(),
                     ),
                     _ if ["FOR", "DURING", "SINCE", "WITHIN"].iter().any(|word| found.eq_ignore_ascii_case(word)) => Some(
@@ -203,7 +203,7 @@ impl RuleMistake<'_> {
                         let message = "there is no hedge `more or less`";
                         Diagnostic::error("rule-syntax", more..start + name.len(), message)
                     }
-                    None => expected("`IS`", &format!("the {kind}")),
+                    None => expected("`IS`", &format!("`{name}`")),
                 };
                 with_help(diagnostic, help)
             }
@@ -211,9 +211,10 @@ impl RuleMistake<'_> {
                 let help = name_is_missing(what, rest, before, known).or_else(|| sign(rest));
                 with_help(syntax(format!("expected {what}, found {shown}")), help)
             }
-            RuleMistakeKind::HedgeBeforeInput => {
-                syntax(format!("the hedge {shown} is before the input")).help(before_input(rest))
-            }
+            RuleMistakeKind::HedgeBeforeInput => syntax(format!(
+                "the hedge {shown} must be before the term, not before the input"
+            ))
+            .help(before_input(rest)),
             RuleMistakeKind::HedgeInConsequent => {
                 syntax(format!("`{found}` is not allowed after `THEN`"))
                     .help(terms_of_conclusion(before, known))
@@ -249,7 +250,7 @@ impl RuleMistake<'_> {
                     .help("write the name of a variable or a term between the quotes")
             }
             RuleMistakeKind::Number => {
-                syntax(format!("expected a weight after `WITH`, found {shown}"))
+                syntax(format!("expected a number after `WITH`, found {shown}"))
                     .help(weight_advice(rest))
             }
             RuleMistakeKind::Weight(weight) => {

@@ -156,10 +156,11 @@ impl<'a> Source<'a> {
         };
         let (rest, ()) = space(rest)?;
         if !rest.is_empty() {
-            return wrong(
-                rest,
-                RuleMistakeKind::Keyword(expected, "after the conclusion"),
-            );
+            let after = match expected {
+                [] => "after the weight",
+                _ => "after the conclusion",
+            };
+            return wrong(rest, RuleMistakeKind::Keyword(expected, after));
         }
         let rule = Rule {
             condition,
@@ -206,7 +207,7 @@ impl<'a> Source<'a> {
             return wrong(rest, RuleMistakeKind::HedgeBeforeInput);
         }
         let start = rest;
-        let (rest, variable) = self.name(rest, "the name of an input, `NOT` or `(`")?;
+        let (rest, variable) = self.name(rest, "an input name, `NOT` or `(`")?;
         let Some(mut rest) = keyword(rest, "IS") else {
             return wrong(rest, RuleMistakeKind::NoIs("input", start));
         };
@@ -239,7 +240,7 @@ impl<'a> Source<'a> {
 
     fn consequent(&self, rest: &'a str) -> ParseResult<'a, Consequent> {
         let start = rest;
-        let (rest, output) = self.name(rest, "the name of an output")?;
+        let (rest, output) = self.name(rest, "an output name")?;
         let Some(rest) = keyword(rest, "IS") else {
             return wrong(rest, RuleMistakeKind::NoIs("output", start));
         };

@@ -112,19 +112,19 @@ fn every_mistake_has_a_position_and_help() {
         (
             "IF margin low THEN r IS h",
             "low",
-            "expected `IS` after the input, found `low`",
+            "expected `IS` after `margin`, found `low`",
             "write `margin IS low`",
         ),
         (
             "IF wind speed IS low THEN r IS h",
             "speed",
-            "expected `IS` after the input, found `speed`",
+            "expected `IS` after `wind`, found `speed`",
             "in quotes",
         ),
         (
             "IF margin = low THEN r IS h",
             "=",
-            "expected `IS` after the input, found `=`",
+            "expected `IS` after `margin`, found `=`",
             "write `IS`",
         ),
         (
@@ -136,7 +136,7 @@ fn every_mistake_has_a_position_and_help() {
         (
             "IF margin IS low ANd AND s IS low THEN r IS h",
             "AND",
-            "expected the name of an input, `NOT` or `(`, found `AND`",
+            "expected an input name, `NOT` or `(`, found `AND`",
             "add a condition after `ANd`, or remove",
         ),
         (
@@ -197,7 +197,7 @@ fn every_mistake_has_a_position_and_help() {
             "IF margin IS low THEN r IS any h",
             "any",
             "`any` is not allowed after `THEN`",
-            "write one term of the output",
+            "write one of the terms of the output",
         ),
         (
             "IF margin IS low THEN r IS",
@@ -208,13 +208,13 @@ fn every_mistake_has_a_position_and_help() {
         (
             "IF margin IS low THEN",
             "",
-            "expected the name of an output, found the end of the rule",
+            "expected an output name, found the end of the rule",
             "add a conclusion",
         ),
         (
             "IF margin IS low THEN r h",
             "h",
-            "expected `IS` after the output, found `h`",
+            "expected `IS` after `r`, found `h`",
             "write `r IS h`",
         ),
         (
@@ -227,24 +227,24 @@ fn every_mistake_has_a_position_and_help() {
             "IF margin IS low THEN r IS h ELSE r IS l",
             "ELSE",
             "expected `AND` or `WITH` after the conclusion, found `ELSE`",
-            "there is no `ELSE`",
+            "rules have no `ELSE`",
         ),
         (
             "IF margin IS low THEN r IS h WITH",
             "",
-            "expected a weight after `WITH`, found the end of the rule",
+            "expected a number after `WITH`, found the end of the rule",
             "from 0 to 1",
         ),
         (
             "IF margin IS low THEN r IS h WITH nan",
             "nan",
-            "expected a weight after `WITH`, found `nan`",
+            "expected a number after `WITH`, found `nan`",
             "from 0 to 1",
         ),
         (
             "IF margin IS low THEN r IS h WITH 80%",
             "80%",
-            "expected a weight after `WITH`, found `80%`",
+            "expected a number after `WITH`, found `80%`",
             "write `WITH 0.8`",
         ),
         (
@@ -262,7 +262,7 @@ fn every_mistake_has_a_position_and_help() {
         (
             "IF margin IS low THEN r IS h WITH 0.5 x",
             "x",
-            "expected the end of the rule after the conclusion, found `x`",
+            "expected the end of the rule after the weight, found `x`",
             "remove everything after the weight",
         ),
         (

@@ -537,7 +537,7 @@ fn messages_name_the_parameter() {
         message(MembershipFunction::Piecewise {
             points: vec![(1.0, 0.5), (0.0, 0.5)]
         }),
-        "the point at 0 comes after the point at 1"
+        "the points are not in ascending order: 0 follows 1"
     );
     assert_eq!(
         message(MembershipFunction::Concave {

@@ -64,7 +64,7 @@ impl MembershipFunction {
                         (Role::Ascending, Some((left, low))) if low > value => {
                             let message =
                                 format!("`{left}` ({low}) is greater than `{name}` ({value})");
-                            let help = "write the positions from left to right: each at or after the one before it";
+                            let help = "write the positions in ascending order; equal positions are allowed";
                             return wrong(i, message, help);
                         }
                         (Role::Ascending, _) => before = Some((name, value)),
@@ -128,7 +128,7 @@ fn piecewise(points: &[(f64, f64)]) -> Result<(), MembershipError> {
     if points.is_empty() {
         return Err(MembershipError {
             message: "there are no points".into(),
-            help: "write each point as a position and a degree: `piecewise: [[x, degree], [x, degree]]`",
+            help: "write each point as a pair of x and degree: `piecewise: [[x, degree], [x, degree]]`",
             parameter: None,
         });
     }
@@ -140,8 +140,8 @@ fn piecewise(points: &[(f64, f64)]) -> Result<(), MembershipError> {
             return wrong(i, message, "write a degree from 0 to 1");
         }
         if before > x {
-            let message = format!("the point at {x} comes after the point at {before}");
-            return wrong(i, message, "write the points from left to right");
+            let message = format!("the points are not in ascending order: {x} follows {before}");
+            return wrong(i, message, "write the points in ascending order of x");
         }
         before = x;
     }

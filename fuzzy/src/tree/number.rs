@@ -84,7 +84,7 @@ pub fn number_advice(text: &str) -> Option<String> {
     let small = plain(number).filter(|_| !unit.contains(|c: char| c.is_ascii_digit()))?;
     Some(match MILLI.iter().find(|(milli, _)| *milli == unit) {
         Some((_, larger)) => format!(
-            "write the number without its unit: `{}` if it is in {larger}, `{number}` if in {unit}",
+            "write the number without its unit: `{}` if the unit is {larger}, `{number}` if it is {unit}",
             small / 1000.0
         ),
         None => format!("write the number without its unit: `{number}`"),
@@ -115,7 +115,9 @@ fn separators(text: &str) -> Option<String> {
             let is_thousands = part.len() == 3 && (1..=3).contains(&digits.len()) && digits != "0";
             return Some(match is_thousands {
                 true => {
-                    format!("write `{whole}{part}`, or `{number}` if the comma is a decimal mark")
+                    format!(
+                        "write `{whole}{part}`, or `{number}` if the comma is meant as a decimal point"
+                    )
                 }
                 false => point(&number),
             });
@@ -152,7 +154,7 @@ mod tests {
             ("0,125", "write a decimal point: `0.125`"),
             (
                 "1,000",
-                "write `1000`, or `1.000` if the comma is a decimal mark",
+                "write `1000`, or `1.000` if the comma is meant as a decimal point",
             ),
             ("1,000.5", "write the number without separators: `1000.5`"),
             ("1.234,5", "write the number without separators: `1234.5`"),
@@ -172,7 +174,7 @@ mod tests {
             ("22V", "write the number without its unit: `22`"),
             (
                 "20mV",
-                "write the number without its unit: `0.02` if it is in V, `20` if in mV",
+                "write the number without its unit: `0.02` if the unit is V, `20` if it is mV",
             ),
             ("1O", "did you mean `10`, with digits in place of letters?"),
             ("0x10", "write decimal digits only: `16`"),

@@ -20,7 +20,7 @@ use crate::{
 const COMMENT: &str = "a comment begins with `#`, not with `//`";
 
 /// The suggestion for a file without a rule set around its rules.
-const ONLY_RULES: &str = "write the rules in a list below a line `rules:`, and `fuzzy: 1`, `name`, `inputs` and `outputs` above it";
+const ONLY_RULES: &str = "write the rules as a list under `rules:`, and add `fuzzy: 1`, `name`, `inputs` and `outputs` above `rules:`";
 
 /// The suggestion for a value that does not resemble a number.
 const NUMBER: &str = "write a number";
@@ -152,7 +152,7 @@ impl<'a> Fields<'a> {
             let place = self.entries.iter().find(|entry| entry.key == key);
             let span = place.map_or(self.place.clone(), |entry| entry.key_span.clone());
             let message = match place {
-                None => format!("{} has no `{key}`", self.what),
+                None => format!("{} has no key `{key}`", self.what),
                 Some(_) => format!("`{key}` of {} is empty", self.what),
             };
             findings.push(Diagnostic::error("missing-key", span, message).help(help));
@@ -219,7 +219,7 @@ impl Node {
                         && is_there(key) =>
                     {
                         Some(format!(
-                            "did you mean `{key}`? That key is there too: keep one of them"
+                            "did you mean `{key}`? That key exists too: keep only one of the two"
                         ))
                     }
                     _ if meant.is_empty() => {
@@ -343,7 +343,7 @@ impl Node {
                 let is_negative = self.as_text().is_some_and(|text| text.starts_with('-'));
                 let bounds = match least {
                     0 if !is_negative => String::new(),
-                    least => format!(", {least} or more,"),
+                    least => format!(" of at least {least}"),
                 };
                 let finding = self.unexpected(&format!("a whole number{bounds} for {what}"));
                 let advice = self.whole_advice(least);
@@ -394,7 +394,7 @@ impl Node {
         let word = self.words(what, &format!("write {}", either(&names)), findings)?;
         let found = choices.iter().find(|(name, _)| *name == word.text);
         if found.is_none() {
-            let message = format!("unknown word `{}` for {what}", word.text);
+            let message = format!("invalid value `{}` for {what}", word.text);
             let mut finding = Diagnostic::error("unknown-word", self.span.clone(), message);
             finding.help = suggest(&word.text, names);
             findings.push(finding);
@@ -422,17 +422,19 @@ impl Node {
             Value::List(items) if !items.is_empty() && items.iter().all(is_rule) => {
                 ("the file contains only rules".into(), ONLY_RULES.into())
             }
-            Value::Scalar(_) if is_rule(self) => {
-                ("the file contains only a rule".into(), ONLY_RULES.into())
-            }
+            Value::Scalar(_) if is_rule(self) => (
+                "the file contains only a rule, not a complete rule set".into(),
+                ONLY_RULES.into(),
+            ),
             Value::List(items) if items.iter().any(|item| item.children() > 0) => {
                 let help = match items.as_slice() {
-                    [_] => "remove the `-`, and begin all keys of the file in the first column",
-                    _ => {
-                        "remove the `-` at the start of the lines: a file contains keys, such as `name: ...`"
-                    }
+                    [_] => "remove the `-`, and begin the top-level keys in the first column",
+                    _ => "remove the `-` before each top-level key, such as `name: ...`",
                 };
-                (format!("the {what} is written as a list"), help.into())
+                (
+                    format!("a {what} must be a mapping, found a list"),
+                    help.into(),
+                )
             }
             Value::Scalar(scalar) if !scalar.is_null() => {
                 (format!("this is plain text, not a {what}"), begin)
@@ -448,6 +450,9 @@ impl Node {
             Value::List(_) => "a list".into(),
             Value::Mapping(_) => "a mapping".into(),
             Value::Scalar(scalar) if scalar.is_null() => "nothing".into(),
+            Value::Scalar(scalar) if scalar.text.trim_end().contains('\n') => {
+                "a text of several lines".into()
+            }
             Value::Scalar(scalar) => {
                 let cut: String = scalar.text.chars().take(40).collect();
                 let dots = if cut.len() < scalar.text.len() {

@@ -20,15 +20,16 @@ impl Validator<'_> {
             ..
         } = self.model;
         if !(MIN_STRENGTH..=1.0).contains(least_strength) {
-            let message =
-                format!("`least_strength` is {least_strength}, outside [{MIN_STRENGTH:e}, 1]");
+            let message = format!(
+                "`least_strength` is {least_strength}, which is outside [{MIN_STRENGTH:e}, 1]"
+            );
             let help = match *least_strength {
                 percent if percent > 1.0 && percent <= 100.0 => format!(
-                    "a firing strength is from 0 to 1: for {percent} % write `{}`",
+                    "a firing strength is between 0 and 1: for {percent} %, write `{}`",
                     percent / 100.0
                 ),
                 small if small < MIN_STRENGTH => format!(
-                    "remove `least_strength`: its default {MIN_STRENGTH:e} excludes only rounding errors"
+                    "remove `least_strength`: the default {MIN_STRENGTH:e} excludes only strengths from rounding errors"
                 ),
                 _ => "write a number from 0 to 1".into(),
             };
@@ -124,10 +125,11 @@ impl Validator<'_> {
                     continue;
                 }
                 let message = format!(
-                    "blocks `{name}` and `{}` conclude `{}` with different implications",
+                    "blocks `{name}` and `{}` have the same output `{}`, but different implications",
                     block.name, output.variable.name
                 );
-                let help = "give both blocks the same implication, or each an output of its own";
+                let help =
+                    "give both blocks the same implication, or give each block its own output";
                 let here = spans.rules.get(i).map_or(0..0, |rule| rule.whole.clone());
                 self.error("different-implications", &here, message, help);
                 break;

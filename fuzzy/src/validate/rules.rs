@@ -5,7 +5,7 @@ use core::ops::Range;
 
 use super::{TERMS_HELP, Validator, or};
 use crate::{
-    diagnostic::{Diagnostic, listed, nearest, suggest},
+    diagnostic::{Diagnostic, either, nearest, suggest},
     model::{MembershipFunction, Rule, Term, Variable, document::RuleSpans},
     rule::{self, Condition, Consequent, DEEPEST_NESTING, Hedge, Name, Proposition, is_plain_name},
 };
@@ -49,7 +49,7 @@ impl<'m> Validator<'m> {
             && !is_degree(confidence)
         {
             let here = or(&spans.confidence, &spans.whole);
-            let message = format!("the confidence of {what} is {confidence}, outside [0, 1]");
+            let message = format!("the confidence {confidence} of {what} is outside [0, 1]");
             self.error("value-outside-range", here, message, help);
         }
         for (i, rejected) in against.iter().enumerate() {
@@ -57,7 +57,7 @@ impl<'m> Validator<'m> {
                 let here = spans.against.get(i).unwrap_or(&spans.whole);
                 let degree = rejected.degree;
                 let message =
-                    format!("the degree in `against` of {what} is {degree}, outside [0, 1]");
+                    format!("the degree {degree} in `against` of {what} is outside [0, 1]");
                 self.error("value-outside-range", here, message, help);
             }
         }
@@ -154,17 +154,17 @@ impl<'m> Validator<'m> {
         match &proposition.term {
             Some(_) if kind == "output" && self.is_weighted(variable) => {
                 let message = format!(
-                    "`{}` is a Takagi-Sugeno output, whose terms are numbers, but a condition needs fuzzy sets",
+                    "a condition reads output `{}`, whose terms are numbers (Takagi-Sugeno), but conditions need fuzzy sets",
                     name.text
                 );
                 let sets = as_partition(variable).map_or(
                     "give it another defuzzifier and fuzzy sets as terms".to_owned(),
-                    |sets| format!("write `{sets}` in place of `terms` and `defuzzifier`"),
+                    |sets| format!("replace `terms` and `defuzzifier` by `{sets}`"),
                 );
                 let mut reported = self.findings.iter_mut();
                 match reported.find(|finding| finding.message == message) {
                     Some(first) if !name.span.is_empty() => {
-                        *first = first.clone().related(name.span.clone(), "read here too");
+                        *first = first.clone().related(name.span.clone(), "also read here");
                     }
                     Some(_) => {}
                     None => self.error("output-in-condition", &name.span, message, &sets),
@@ -200,9 +200,12 @@ impl<'m> Validator<'m> {
         // A model without outputs is reported separately.
         if found.is_none() && !self.outputs.is_empty() {
             let finding = if self.inputs.contains_key(name.text.as_str()) {
-                let message = format!("`{}` is an input; a conclusion sets outputs", name.text);
+                let message = format!(
+                    "`{}` is an input, but a conclusion can only set outputs",
+                    name.text
+                );
                 let outputs: Vec<&str> = self.outputs.keys().copied().collect();
-                let help = format!("write an output in its place: {}", listed(&outputs));
+                let help = format!("name an output instead: {}", either(&outputs));
                 Diagnostic::error("input-in-conclusion", name.span.clone(), message).help(help)
             } else {
                 let known = self.outputs.keys().copied();
@@ -236,7 +239,7 @@ impl<'m> Validator<'m> {
             let finding = Diagnostic::error("missing-key", here, message);
             self.findings.push(
                 finding
-                    .related(term.span.clone(), "a term is named here")
+                    .related(term.span.clone(), "a rule uses a term of it here")
                     .help(TERMS_HELP),
             );
             self.unread.push(&variable.name);
@@ -260,11 +263,11 @@ impl<'m> Validator<'m> {
                 .map(|(name, term)| format!("{name}: {}", term.name))
                 .collect();
             finding.message = format!(
-                "the terms of {kind} `{}` have numbers as names, so there is no term `{}`",
+                "the names of the terms of {kind} `{}` are numbers, so there is no term `{}`",
                 variable.name, term.text
             );
             finding.help = Some(format!(
-                "write names with peaks: `partition: {{{}}}`",
+                "write a name and a peak for each term: `partition: {{{}}}`",
                 peaks.join(", ")
             ));
             self.findings.push(finding);
@@ -273,7 +276,7 @@ impl<'m> Validator<'m> {
         }
         if term.text.parse::<f64>().is_ok() {
             let help = finding.help.unwrap_or_default();
-            finding.help = Some(format!("a rule names a term, not a number; {help}"));
+            finding.help = Some(format!("a rule names a term, not a number: {help}"));
         }
         // A term such as `very humid`, whose first word is parsed as a hedge.
         let has_hedges = !hedges.is_empty();
@@ -286,12 +289,22 @@ impl<'m> Validator<'m> {
                 true => format!("put the name in quotes: `IS \"{}\"`", known.name),
                 false => format!("did you mean `{}`?", known.name),
             });
+        } else if let Some((hedge, known)) = hedged_term(&term.text, variable) {
+            finding.help = Some(format!("write a space after the hedge: `{hedge} {known}`"));
         } else if let Some(joined) = self.joined(kind, variable, &term.text) {
-            finding = joined.related(term.span.clone(), "named here");
+            finding = joined.related(term.span.clone(), "used here");
             self.unread.push(&variable.name);
         }
         self.findings.push(finding);
     }
+}
+
+/// Returns the hedge and the term of a name such as `very_hot` or `very-hot`.
+fn hedged_term<'v>(name: &str, variable: &'v Variable) -> Option<(&'static str, &'v str)> {
+    let (first, second) = name.split_once(['_', '-'])?;
+    let hedge = Hedge::ALL.iter().find(|hedge| hedge.word() == first)?;
+    let term = variable.terms.iter().find(|term| term.name == second)?;
+    Some((hedge.word(), &term.name))
 }
 
 impl Validator<'_> {
@@ -308,7 +321,7 @@ impl Validator<'_> {
         let spans = variables.find(|(known, _)| core::ptr::eq(*known, variable));
         let span = spans.and_then(|(_, spans)| Some(spans.terms.get(index)?.name.clone()));
         let message = format!(
-            "{kind} `{}` has a term `{joined}`, but no `{name}`",
+            "{kind} `{}` has a term `{joined}`, but no term `{name}`",
             variable.name
         );
         let peaks = variable.terms.iter().map(|term| {
@@ -327,7 +340,10 @@ impl Validator<'_> {
             Some(peaks) => {
                 let peaks = peaks.iter().map(|(name, peak)| format!("{name}: {peak}"));
                 let peaks: Vec<String> = peaks.collect();
-                format!("write peaks in braces: `{{{}}}`", peaks.join(", "))
+                format!(
+                    "write the terms with their peaks in braces: `{{{}}}`",
+                    peaks.join(", ")
+                )
             }
             None => format!(
                 "write a comma between the terms: `{}`",

@@ -62,7 +62,7 @@ impl Validator<'_> {
             let here = or(&spans.height, &spans.name);
             let message = format!("the height {height} of {what} is outside (0, 1]");
             let help = percentage_advice(height).unwrap_or_else(|| {
-                "write a number greater than 0 and at most 1: the largest degree of the term".into()
+                "the height is the largest degree of the term: write a number greater than 0 and at most 1".into()
             });
             self.error("wrong-parameter", here, message, &help);
         }
@@ -74,7 +74,8 @@ impl Validator<'_> {
             let message = format!("the range of {what} is [{low}, {high}], not finite");
             self.error("wrong-range", here, message, "write two finite numbers");
         } else if low >= high {
-            let message = format!("the range of {what} starts at {low} and ends at {high}");
+            let message =
+                format!("the range of {what} must end above its start, but is [{low}, {high}]");
             let help = match variable.low == variable.high {
                 true => "write a maximum that is above the minimum",
                 false => "write the minimum first, then the maximum",
@@ -87,7 +88,7 @@ impl Validator<'_> {
                 "wrong-range",
                 here,
                 message,
-                "write the minimum and the maximum that can occur",
+                "write the smallest and the largest value that can occur",
             );
         } else if high - low < NARROWEST_RANGE {
             let message = format!("the range of {what} is too narrow");
@@ -121,8 +122,10 @@ impl Validator<'_> {
     ) {
         match function {
             MembershipFunction::Linear { .. } => {
-                let message = format!("{what} is a linear function");
-                let help = "write a membership function such as `triangle`; only outputs can have linear functions";
+                let message = format!(
+                    "{what} is a linear function, but only outputs can have linear functions"
+                );
+                let help = "write a membership function such as `triangle`";
                 self.error("wrong-term", &spans.name, message, help);
                 return;
             }
@@ -140,11 +143,11 @@ impl Validator<'_> {
             let help = match function {
                 MembershipFunction::Constant { .. } if (input.low..=input.high).contains(&number) => {
                     format!(
-                        "in an input, `constant` gives the term the same degree at every value; for values near {number}, write a membership function such as `triangle`, for the value {number} only `singleton: {number}`"
+                        "in an input, `constant` is the degree of the term at every value; for values near {number}, write a membership function such as `triangle`; for exactly {number}, write `singleton: {number}`"
                     )
                 }
-                MembershipFunction::Constant { .. } => "in an input, `constant` gives the term the same degree at every value: write a degree from 0 to 1".into(),
-                _ => "a degree must lie within [0, 1]: change the formula".into(),
+                MembershipFunction::Constant { .. } => "in an input, `constant` is the degree of the term at every value: write a degree from 0 to 1".into(),
+                _ => "change the formula so that its result stays within [0, 1]".into(),
             };
             self.error("wrong-parameter", here, message, &help);
         }
@@ -161,7 +164,10 @@ impl Validator<'_> {
         for (i, name) in formula.variables().enumerate() {
             if name != variable.name {
                 let here = spans.parameters.get(i).unwrap_or(&spans.name);
-                let message = format!("{what}: the formula of a fuzzy set reads `{name}`");
+                let message = format!(
+                    "{what}: its formula uses `{name}`, but may use only `{}`",
+                    variable.name
+                );
                 let own = &variable.name;
                 let help = match name {
                     "e" => format!("for a power of e, write `exp({own})`"),
@@ -171,7 +177,7 @@ impl Validator<'_> {
                         format!("did you mean `{own}`?")
                     }
                     _ => format!(
-                        "use only `{own}` here; outputs with `weighted_average` or `weighted_sum` can have formulas of several inputs"
+                        "outputs with `weighted_average` or `weighted_sum` can have formulas that use several inputs"
                     ),
                 };
                 self.error("wrong-term", here, message, &help);
@@ -190,7 +196,7 @@ impl Validator<'_> {
             return;
         }
         let message = format!("the formula of {what} has no finite value");
-        let help = "change the formula: division by 0, and roots and logarithms of negative numbers, have no value";
+        let help = "change the formula so that it does not divide by 0 or take roots or logarithms of negative numbers";
         self.error("wrong-parameter", &spans.name, message, help);
     }
 
@@ -220,7 +226,7 @@ impl Validator<'_> {
             && !spans.range_unread
             && !(variable.low..=variable.high).contains(&value)
         {
-            let message = format!("the value {value} lies outside the range of {what}");
+            let message = format!("the value {value} is outside the range of {what}");
             let help = format!("write a value from {} to {}", variable.low, variable.high);
             let here = or(&spans.default, &spans.name);
             self.error("value-outside-range", here, message, &help);
@@ -259,7 +265,7 @@ impl Validator<'_> {
                         let message = format!(
                             "{what} is a linear function, but the defuzzifier `{defuzzifier}` needs fuzzy sets"
                         );
-                        let help = "write `defuzzifier: weighted_average`, and numbers or linear functions for all terms";
+                        let help = "write `defuzzifier: weighted_average`; every term of the output must then be a constant or a linear function";
                         self.error("wrong-term", here, message, help);
                     }
                     self.coefficients(&what, coefficients, spans);
@@ -275,7 +281,7 @@ impl Validator<'_> {
                 }
                 shape if tsukamoto && !shape.is_monotone() => {
                     let message = format!("{what} is not monotone");
-                    let help = "write a membership function that only rises or only falls, such as `right_shoulder` or `left_shoulder`: `tsukamoto` needs exactly one value for each degree";
+                    let help = "`tsukamoto` needs exactly one value for each degree: write a membership function that only rises or only falls, such as `right_shoulder` or `left_shoulder`";
                     self.error("wrong-term", here, message, help);
                 }
                 MembershipFunction::Singleton { .. } if !weighted && !output.is_discrete() => {
@@ -310,7 +316,9 @@ impl Validator<'_> {
             all => (format!("the terms {} of {what}", all_of(all)), "are", "s"),
         };
         if output.defuzzifier == Defuzzifier::Bisector {
-            let message = format!("{subject} {are} singleton{kind}, but `bisector` halves an area");
+            let message = format!(
+                "{subject} {are} singleton{kind} without an area, but the defuzzifier `bisector` divides an area"
+            );
             let help =
                 "write `defuzzifier: centroid`, which weights the positions by their degrees";
             self.error("wrong-term", here, message, help);
@@ -366,7 +374,7 @@ impl Validator<'_> {
         let help = if numbers.count() == terms.len() {
             "write `defuzzifier: weighted_average`"
         } else {
-            "write a fuzzy set such as `triangle` for it, or numbers for all terms and `defuzzifier: weighted_average`"
+            "replace the number by a fuzzy set such as `triangle`, or make all terms numbers and write `defuzzifier: weighted_average`"
         };
         let here = of(first).name.clone();
         self.error("wrong-term", &here, message, help);

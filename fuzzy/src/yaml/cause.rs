@@ -74,7 +74,10 @@ fn marked(lines: &[(usize, &str)]) -> Option<Diagnostic> {
             "remove the `+` at the start of each line",
         )
     } else if is_numbered {
-        ("each line begins with a number", "remove the line numbers")
+        (
+            "each line begins with a line number",
+            "remove the line numbers",
+        )
     } else {
         return None;
     };
@@ -158,7 +161,7 @@ fn of_rules(text: &str, start: usize) -> Option<Diagnostic> {
     let first = content.split(' ').next().unwrap_or("");
     if content.starts_with('-') && first.len() > 1 {
         let finding = Diagnostic::error("yaml-syntax", at..at + 1, "a space is missing after `-`");
-        return Some(finding.help("write `- `, with a space, before each entry of a list"));
+        return Some(finding.help("begin each entry of a list with `-` and a space"));
     }
     let continues = ["AND", "OR", "THEN", "WITH"];
     if !continues
@@ -167,7 +170,7 @@ fn of_rules(text: &str, start: usize) -> Option<Diagnostic> {
     {
         return None;
     }
-    let message = "this line continues a rule, but is not indented below it";
+    let message = "this line continues a rule, but is not indented under it";
     let finding = Diagnostic::error("yaml-syntax", at..at + content.len(), message);
     Some(finding.help("indent the line more than the `-` of its rule"))
 }
@@ -186,8 +189,8 @@ fn list_entry(text: &str, start: usize) -> Option<Diagnostic> {
             "align its `-` with the `-` of the entries above",
         ),
         false => (
-            "this list is not below a key",
-            "indent it below its key, such as `rules:`",
+            "this list is not nested under a key",
+            "indent the list under the key that it belongs to, such as `rules:`",
         ),
     };
     Some(Diagnostic::error("yaml-syntax", at..at + content.len(), message).help(help))
@@ -262,7 +265,7 @@ fn missing_space_after_colon(text: &str, start: usize) -> Option<Diagnostic> {
     if !is_key(key) || value.is_empty() || value.starts_with([' ', '/']) || value.contains(": ") {
         return None;
     }
-    let message = "a space is missing after a colon";
+    let message = "a space is missing after this colon";
     let finding = Diagnostic::error("yaml-syntax", at..at + content.len(), message);
     Some(finding.help(specific_or(
         text,
@@ -282,7 +285,7 @@ fn no_colon(text: &str, start: usize) -> Option<Diagnostic> {
     if !is_key(key) || content.contains(": ") {
         return no_key(text, start);
     }
-    let message = "a colon is missing after a key";
+    let message = "a colon is missing after this key";
     let finding = Diagnostic::error("yaml-syntax", at..at + content.len(), message);
     let general = "write `key: value`, with a colon and a space";
     Some(finding.help(specific_or(
@@ -359,11 +362,11 @@ fn indented_more(text: &str, start: usize) -> Option<Diagnostic> {
         }
         if indent(line) < here {
             let (at, line) = first.filter(|_| content.ends_with(':'))?;
-            let message = "the line is indented more than the following lines of the same mapping";
+            let message = "this line is indented more than the following lines of the same mapping";
             let finding = Diagnostic::error("yaml-syntax", at..at + str::len(line), message);
             let key = line.split(':').next().unwrap_or("");
             return Some(finding.help(match is_key_of_variable(key) {
-                true => "write the name of the input or output above this line",
+                true => "if the name of an input or output is missing, write it above this line",
                 false => "begin the keys of one mapping in the same column",
             }));
         }
@@ -386,7 +389,7 @@ fn is_key(key: &str) -> bool {
 /// beginning of the line at `start` or of the line before it.
 fn brackets_behind_colon(text: &str, at: usize, start: usize) -> Option<Diagnostic> {
     let finding = |colon: usize| {
-        let message = String::from("a space is missing after a colon");
+        let message = String::from("a space is missing after this colon");
         Diagnostic::error("yaml-syntax", colon..colon + 1, message)
             .help("write a space after the colon")
     };
@@ -414,7 +417,7 @@ fn key_without_colon(text: &str, start: usize) -> Option<Diagnostic> {
     let (at, content) = (start + indent(line), line.trim());
     let is_meant = is_key(content) && indent(below) > indent(line) && below.contains(':');
     is_meant.then(|| {
-        let message = String::from("a colon is missing after a key");
+        let message = String::from("a colon is missing after this key");
         let help = specific_or(
             text,
             format!("write `{content}:`"),

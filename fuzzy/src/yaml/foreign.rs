@@ -25,11 +25,13 @@ pub(super) fn foreign(text: &str) -> Option<Diagnostic> {
         return foreign(first, message, help);
     }
     if first.1.starts_with("version https://git-lfs.") {
-        let message = String::from("this is a pointer of Git LFS, not the file itself");
+        let message = String::from("this is a Git LFS pointer, not the file itself");
         return foreign(first, message, "fetch the file: `git lfs pull`");
     }
     if let Some((format, section)) = headless(&lines) {
-        let message = format!("this looks like {format} without its first section `{section}`");
+        let message = format!(
+            "this looks like a file in {format} format without its first section, `{section}`"
+        );
         return foreign(
             first,
             message,
@@ -39,8 +41,8 @@ pub(super) fn foreign(text: &str) -> Option<Diagnostic> {
     if let Some(program) = program(first.1) {
         let message = format!("this is {program}, not a rule set in YAML");
         let help = match program {
-            WEB_PAGE => "download the file itself; on GitHub, the button `Raw` shows it",
-            CPP => "let the program write FLL with `FllExporter`, and use that file",
+            WEB_PAGE => "download the file itself; on GitHub, use the `Raw` button",
+            CPP => "export the engine to an FLL file with `FllExporter`, and use that file",
             _ => "write inputs, outputs and rules as YAML; a rule set begins with `fuzzy: 1`",
         };
         return foreign(first, message, help);
@@ -50,7 +52,7 @@ pub(super) fn foreign(text: &str) -> Option<Diagnostic> {
         return foreign(
             first,
             message,
-            "use a rule set here; a command that also reads a table takes it after the rule set",
+            "name a rule set here; commands that also read a table take the table after the rule set",
         );
     }
     None

@@ -267,7 +267,7 @@ fn build(text: &str) -> Result<Node, Box<SyntaxError>> {
     }
     document.filter(|node| !node.is_null()).ok_or_else(|| {
         Diagnostic::error("empty-file", 0..0, "the file is empty")
-            .help("write a rule set; it begins with `fuzzy: 1`")
+            .help("write a rule set, which begins with `fuzzy: 1`")
             .into()
     })
 }

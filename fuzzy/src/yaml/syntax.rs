@@ -57,6 +57,16 @@ fn rest_of_line(text: &str, at: usize) -> &str {
     rest.lines().next().unwrap_or("").trim_end()
 }
 
+/// Returns the suggestion for quotes around a part of a rule; the text in quotes ends before `at`.
+fn in_rule(text: &str, at: usize) -> Option<&'static str> {
+    let line = text.get(..at)?.rsplit('\n').next()?;
+    let quoted = line.trim_start_matches([' ', '-']);
+    let is_rule = quoted
+        .get(1..4)
+        .is_some_and(|word| word.eq_ignore_ascii_case("IF "));
+    is_rule.then_some("remove the quotes, or put the whole rule in quotes")
+}
+
 /// Returns the finding for an error in a text in quotes.
 fn quotes(text: &str, at: usize, kind: &ErrorKind) -> Option<Diagnostic> {
     match kind {
@@ -80,13 +90,23 @@ fn quotes(text: &str, at: usize, kind: &ErrorKind) -> Option<Diagnostic> {
             let message = "the text in single quotes ends before this point";
             let help =
                 "write `''` for an apostrophe in single quotes, or put the text in double quotes";
-            Some(finding_at(text, at, message, help))
+            Some(finding_at(
+                text,
+                at,
+                message,
+                in_rule(text, at).unwrap_or(help),
+            ))
         }
         ErrorKind::InvalidTrailingDoubleQuotedScalar => {
             let message = "the text in double quotes ends before this point";
             let help =
                 "write `\\\"` for a quote in double quotes, or put the text in single quotes";
-            Some(finding_at(text, at, message, help))
+            Some(finding_at(
+                text,
+                at,
+                message,
+                in_rule(text, at).unwrap_or(help),
+            ))
         }
         ErrorKind::UnknownQuotedScalarEscape => {
             let rest = text.get(at..)?;
@@ -205,11 +225,13 @@ fn of_one_word(text: &str, at: usize, kind: &ErrorKind) -> Option<Diagnostic> {
             let end = rest.find([',', ']', '}', '#']).unwrap_or(rest.len());
             let word = rest.get(..end)?.trim_end();
             let message = format!("a text cannot begin with `{character}`");
-            let help = specific_or(
-                text,
-                format!("put it in quotes: `\"{word}\"`"),
-                "put it in quotes",
-            );
+            // For example `risk: >67`.
+            let number = word.trim_start_matches(['>', '=', ' ']);
+            let specific = match number.parse::<f64>() {
+                Ok(_) => format!("write only the number: `{number}`"),
+                Err(_) => format!("put it in quotes: `\"{word}\"`"),
+            };
+            let help = specific_or(text, specific, "put it in quotes");
             Some(finding_at(text, at, &message, help))
         }
         _ => None,
@@ -236,7 +258,7 @@ fn message(text: &str, at: usize, kind: &ErrorKind) -> (String, &'static str) {
         ErrorKind::ExpectedBlockSequenceEntry => match content.ends_with(':') {
             true => (
                 "this name has no `-` before it, but the one above has one",
-                "remove the `-` above, and indent the keys below each name: inputs, outputs and blocks have no `-`",
+                "remove the `-` above, and indent the keys under each name: inputs, outputs and blocks have no `-`",
             ),
             false => (
                 "this entry has no `-` before it, but the one above has one",

@@ -251,12 +251,13 @@ impl<'a> Line<'a> {
         found
     }
 
-    /// Advice for an option whose value is the file that is missing, as in `--rising fan.yaml`.
+    /// Advice for an option whose value is the file that is missing, as in `--rising fan.yaml` and `--profile 7.BIN`.
     pub(super) fn taken_file(&self) -> Option<String> {
         let pair = self.words.windows(2).find(|pair| match pair {
             [option, value] => {
                 let takes = self.arg(option).is_some_and(takes_value);
-                takes && has_ending(Path::new(value), RULES) && Path::new(value).exists()
+                let is_rules = has_ending(Path::new(value), RULES);
+                takes && is_rules != (option == "--profile") && Path::new(value).exists()
             }
             _ => false,
         });
@@ -264,7 +265,8 @@ impl<'a> Line<'a> {
         let argument = self.arg(option)?;
         let name = argument.get_value_names()?.first()?;
         let (command, file) = (self.command.get_name(), in_shell(file));
-        (!name.contains("FILE") && !name.contains("PATH")).then(|| {
+        let takes_files = name.contains("FILE") || name.contains("PATH");
+        (option == "--profile" || !takes_files).then(|| {
             format!(
                 "`{option}` took `{file}` as its value: write `flagred {command} {file} {option} {name}`"
             )
@@ -312,7 +314,7 @@ pub(super) fn has_word(words: &str, word: &str) -> bool {
 }
 
 /// Quotes a word for the shell if necessary.
-pub(super) fn in_shell(word: &str) -> String {
+pub(crate) fn in_shell(word: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "._-/=:+@%,".contains(c);
     match word.chars().all(is_plain) && !word.is_empty() {
         true => word.to_owned(),

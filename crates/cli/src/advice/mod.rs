@@ -11,8 +11,9 @@ use clap::{
 };
 use fuzzy::diagnostic::nearest;
 
+pub(crate) use self::line::in_shell;
 use self::{
-    line::{Line, has_word, in_shell, takes_value, value_of},
+    line::{Line, has_word, takes_value, value_of},
     words::{COMMANDS, VALUES},
 };
 use crate::{

@@ -273,10 +273,12 @@ fn columns(arguments: &Arguments, table: &Table) -> Result<(Vec<String>, Vec<Str
 
 /// Refuses a target that consists of words, such as `good` and `bad`.
 fn has_numbers(arguments: &Arguments, table: &Table) -> Result<(), Failure> {
-    let column = arguments
-        .format
-        .layout
-        .columns(&[&arguments.target], &table.header)?;
+    let layout = &arguments.format.layout;
+    if !layout.renames(&arguments.target) {
+        let help = "name the column of the output with `--target`";
+        table.header.require(&arguments.target, help)?;
+    }
+    let column = layout.columns(&[&arguments.target], &table.header)?;
     let help = "for two classes write 0 and 1; `FuzzyClassifier` of the Python package supports words and more than two classes";
     let column = column
         .first()

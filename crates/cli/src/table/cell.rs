@@ -97,7 +97,7 @@ mod tests {
             ),
             (
                 "1,000",
-                "`1,000` is not a number: write `1000`, or `1.000` if the comma is a decimal mark",
+                "`1,000` is not a number: write `1000`, or `1.000` if the comma is meant as a decimal point",
             ),
             (
                 "15.48 %",

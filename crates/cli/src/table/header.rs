@@ -22,6 +22,17 @@ impl Header {
 
     /// Returns the index of a required column; `help` is added to the message if it is missing.
     pub(crate) fn require(&self, name: &str, help: &str) -> Result<usize, Failure> {
+        self.require_with(name, help, |meant| format!("did you mean `{meant}`?"))
+    }
+
+    /// Returns the index of a required column. If it is missing, `help` is added to the message, or `for_case` of a column
+    /// that differs from the name only in upper and lower case.
+    pub(super) fn require_with(
+        &self,
+        name: &str,
+        help: &str,
+        for_case: impl Fn(&str) -> String,
+    ) -> Result<usize, Failure> {
         if name.is_empty() {
             // A column without a name in the header cannot be requested.
             return Err(Failure::usage("a column must have a name").help(help));
@@ -49,8 +60,7 @@ impl Header {
             let columns = columns.filter(|name| !name.is_empty());
             // The most frequent mistake is a difference in upper and lower case.
             if let Some(column) = columns.clone().find(|it| it.eq_ignore_ascii_case(name)) {
-                let column = quoted(column);
-                return failure.help(format!("did you mean `{column}`? then add `--column {name}={column}`"));
+                return failure.help(for_case(&quoted(column)));
             }
             // The table may have a line for each variable instead of a column, as in `temperature,5,24,35`.
             let is_number = |name: &String| name.parse::<f64>().is_ok();
@@ -72,7 +82,10 @@ impl Header {
             }
             failure.help(match fuzzy::diagnostic::suggest(name, columns) {
                 Some(meant) if meant.ends_with('?') => format!("{meant} If not: {help}"),
-                Some(meant) => format!("{meant}; {help}"),
+                Some(columns) => {
+                    let columns = columns.replace("choose one of", "its columns are");
+                    format!("{columns}; {help}")
+                }
                 None => help.to_owned(),
             })
         })

@@ -58,7 +58,7 @@ const MISTAKES: &[(&str, i32, &str)] = &[
     (
         "assess flight.csv --step 100ms",
         2,
-        "`0.1` if it is in s, `100` if in ms",
+        "`0.1` if the unit is s, `100` if it is ms",
     ),
     (
         "assess capital_motors.csv",

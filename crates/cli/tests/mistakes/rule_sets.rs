@@ -196,7 +196,7 @@ const MISTAKES: &[(&str, i32, &str)] = &[
     (
         "check unsigned.yaml",
         1,
-        "error[missing-key]: the profile has no `flagred`",
+        "error[missing-key]: the profile has no key `flagred`",
     ),
 ];
 

@@ -71,7 +71,7 @@ impl Layout {
                 Err(problem(
                     line,
                     text,
-                    "rename the columns of the motors: lower-case letters, without separators",
+                    "rename the columns of the motors: lower-case letters, without separators or units",
                 ))
             })?;
         }
@@ -94,11 +94,18 @@ impl Layout {
         }
         for (index, &(number, _)) in motors.iter().enumerate() {
             if number != index as u64 + 1 {
-                let text = format!(
-                    "there is a column `{stem}{number}` but no `{stem}{}`",
-                    index + 1
-                );
-                return Err(problem(line, text, "number the motors from 1 without gaps"));
+                let missing = format!("{stem}{}", index + 1);
+                let text = format!("there is a column `{stem}{number}` but no `{missing}`");
+                // For example `motor1 (%)`.
+                let is_meant = |name: &&String| {
+                    let rest = name.strip_prefix(&missing);
+                    rest.is_some_and(|rest| !rest.starts_with(|c: char| c.is_alphanumeric()))
+                };
+                let help = match names.iter().find(is_meant) {
+                    Some(given) => format!("rename `{given}` to `{missing}`"),
+                    None => "number the motors from 1 without gaps".into(),
+                };
+                return Err(problem(line, text, &help));
             }
         }
         let motors: Vec<usize> = motors.into_iter().map(|(_, column)| column).collect();
@@ -187,7 +194,10 @@ fn time_help(names: &[String]) -> String {
         ("_s", ""),
     ];
     let of = |name: &String| {
-        let lower = name.to_ascii_lowercase();
+        // For example `time (ms)`.
+        let parts = name.split(|c: char| !c.is_ascii_alphanumeric());
+        let parts: Vec<&str> = parts.filter(|part| !part.is_empty()).collect();
+        let lower = parts.join("_").to_ascii_lowercase();
         let unit = UNITS
             .iter()
             .find_map(|(end, by)| Some((lower.strip_suffix(end)?, *by)));

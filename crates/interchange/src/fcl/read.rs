@@ -167,7 +167,7 @@ impl<'r, 't> Reader<'r, 't> {
         }
         let help = match nearest(name, blocks.iter().map(|(_, known)| *known)) {
             Some(near) => format!("did you mean `{near}`?"),
-            None => format!("there are {listed}"),
+            None => format!("choose one of {listed}"),
         };
         let message = format!("there is no function block `{name}`");
         let part = blocks
@@ -258,7 +258,7 @@ impl<'r, 't> Reader<'r, 't> {
         }
         if !self.is_cut_off {
             let help =
-                "declare an output in `VAR_OUTPUT`, and write its terms in a section `DEFUZZIFY`";
+                "declare an output in `VAR_OUTPUT`, and write its terms in a `DEFUZZIFY` section";
             self.draft.require_output(help);
         }
         self.draft.finish()

@@ -126,8 +126,9 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
     let outputs = draft.model.outputs.len();
     count(&mut draft, system, "NumInputs", names.len());
     count(&mut draft, system, "NumOutputs", outputs);
-    draft
-        .require_output("add a section `[Output1]`, or copy the whole file again if it is cut off");
+    draft.require_output(
+        "add an `[Output1]` section, or copy the whole file again if it is cut off",
+    );
     // Rules refer to terms by number, so all variables must exist.
     if !draft.has_errors() {
         let section = sections
@@ -427,7 +428,10 @@ fn count(draft: &mut ModelDraft<'_>, section: &Section<'_>, key: &str, found: us
     if written.parse() == Ok(found) {
         return;
     }
-    let message = format!("`{key}` is {}, but the file has {found}", quoted(written));
+    let message = format!(
+        "`{key}` is {}, but the file contains {found}",
+        quoted(written)
+    );
     if found == 0 && written.parse::<usize>().is_ok() {
         let help = "copy the whole file again: it is cut off";
         draft.error("wrong-count", written, message, help);

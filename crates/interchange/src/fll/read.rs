@@ -129,7 +129,7 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
     aggregate(&mut draft, &of(SectionKind::Output).collect::<Vec<_>>());
     output_conditions::replace(&mut draft);
     draft.require_output(
-        "add a section `OutputVariable`, or copy the whole file again if it is cut off",
+        "add an `OutputVariable` section, or copy the whole file again if it is cut off",
     );
     draft.finish()
 }

@@ -417,7 +417,7 @@ fn a_file_that_is_not_a_profile_is_refused() {
     for (text, expected) in [
         ("", "the file is empty"),
         ("[1, 2]", "expected a profile, found a list"),
-        ("name: x", "the profile has no `flagred`"),
+        ("name: x", "the profile has no key `flagred`"),
         (
             "flagred: 2\nname: x\nrules: y\ninputs: {a: {last: b}}",
             "version 1 only",

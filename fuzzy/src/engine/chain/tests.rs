@@ -161,7 +161,7 @@ fn a_cycle_is_refused_with_its_path() {
     assert_eq!(
         messages(&text),
         [
-            "circular-outputs: outputs read one another in a circle: `fan` reads `comfort` in rule 1, \
+            "circular-outputs: circular dependency between outputs: `fan` reads `comfort` in rule 1, \
           `comfort` reads `fan` in rule 4"
         ]
     );
@@ -171,7 +171,9 @@ fn a_cycle_is_refused_with_its_path() {
     );
     assert_eq!(
         messages(&itself),
-        ["circular-outputs: an output cannot read itself: `comfort` in rule 4"]
+        [
+            "circular-outputs: an output cannot read itself, but rule 4 has `comfort` in its condition and its conclusion"
+        ]
     );
 }
 

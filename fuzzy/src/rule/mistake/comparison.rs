@@ -52,7 +52,7 @@ pub(super) fn side_of_words<'a>(words: &[&'a str]) -> Option<(Side, &'a str)> {
 /// Returns the suggestion for a number in a condition.
 pub(super) fn not_a_number(input: &str) -> String {
     format!(
-        "a condition names a term, not a number: give `{input}` a term for these values and write `{input} IS term`"
+        "a condition names a term, not a number: add a term for these values to `{input}`, and write `{input} IS` followed by its name"
     )
 }
 
@@ -73,7 +73,7 @@ pub(super) fn compared(input: &str, side: Side, term: &str, known: KnownNames<'_
     };
     match terms.get(range).unwrap_or_default() {
         [] => format!(
-            "no term of `{input}` is {words} `{term}`: there are {}",
+            "no term of `{input}` is {words} `{term}`; its terms are {}",
             listed(terms)
         ),
         some => format!("write `{}`", any_of(input, some)),
@@ -105,7 +105,7 @@ fn not_a_term(input: &str, word: &str, terms: &[&str]) -> String {
         _ if word.parse::<f64>().is_ok() => not_a_number(input),
         [] => format!("a condition names a term: write `{input} IS term`"),
         _ => format!(
-            "`{word}` is not a term of `{input}`: there are {}",
+            "`{input}` has no term `{word}`; its terms are {}",
             listed(terms)
         ),
     }

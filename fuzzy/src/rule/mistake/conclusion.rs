@@ -6,18 +6,18 @@ use super::{
     KnownNames,
     words::{found_here, last_input},
 };
-use crate::{diagnostic::listed, rule::is_plain_name, tree::share_of_percentage};
+use crate::{diagnostic::either, rule::is_plain_name, tree::share_of_percentage};
 
 /// Returns a suggestion for `NOT` or `any` after `THEN`; `before` ends with `THEN output IS`.
 pub(super) fn terms_of_conclusion(before: &str, known: KnownNames<'_>) -> String {
     let output = last_input(before).and_then(|name| known.variable(name));
     match output {
         Some(output) => format!(
-            "write one term of `{}`: there are {}",
+            "write one of the terms of `{}`: {}",
             output.name,
-            listed(&output.terms)
+            either(&output.terms)
         ),
-        None => "write one term of the output, such as `IS low` or `IS very low`".into(),
+        None => "write one of the terms of the output, such as `IS low` or `IS very low`".into(),
     }
 }
 
@@ -61,14 +61,14 @@ pub(super) fn after_conclusion(before: &str, rest: &str, weighted: bool) -> Opti
     if let Some((number, value)) = number_behind("*")
         && (0.0..=1.0).contains(&value)
     {
-        return Some(format!("write a weight after `WITH`: `WITH {number}`"));
+        return Some(format!("write `WITH` before the weight: `WITH {number}`"));
     }
     if let Some((_, divisor)) = number_behind("/")
         && let Some(Ok(number)) = before.split_whitespace().next_back().map(str::parse::<f64>)
         && (0.0..=1.0).contains(&(number / divisor))
     {
         return Some(format!(
-            "write a weight as a decimal number: `WITH {}`",
+            "write the weight as a decimal number: `WITH {}`",
             number / divisor
         ));
     }
@@ -78,10 +78,10 @@ pub(super) fn after_conclusion(before: &str, rest: &str, weighted: bool) -> Opti
         return Some(match parts(before) {
             Some((condition, _)) => {
                 format!(
-                    "there is no `ELSE`: write a second rule, `IF NOT ({condition}) THEN {behind}`"
+                    "rules have no `ELSE`: write a second rule, `IF NOT ({condition}) THEN {behind}`"
                 )
             }
-            None => "there is no `ELSE`: write a second rule with `NOT`".into(),
+            None => "rules have no `ELSE`: write a second rule with `NOT`".into(),
         });
     }
     if found == "-"
@@ -89,10 +89,14 @@ pub(super) fn after_conclusion(before: &str, rest: &str, weighted: bool) -> Opti
             .get(..2)
             .is_some_and(|word| word.eq_ignore_ascii_case("if"))
     {
-        return Some("this `-` starts a new rule: align it with the `-` of the rules above".into());
+        return Some(
+            "if this `-` is to begin a new rule, align it with the `-` of the rules above".into(),
+        );
     }
     if is("or") {
-        return Some("conclusions are joined by `AND`; instead of `OR`, write two rules".into());
+        return Some(
+            "conclusions can only be joined with `AND`; instead of `OR`, write two rules".into(),
+        );
     }
     if is("if") || is("when") {
         let is_rule = behind.to_ascii_lowercase().contains(" then ");
@@ -106,11 +110,11 @@ pub(super) fn after_conclusion(before: &str, rest: &str, weighted: bool) -> Opti
         });
     }
     if is("then") {
-        return Some("join conclusions by `AND`, or write a second rule".into());
+        return Some("join conclusions with `AND`, or write a second rule".into());
     }
     if is("unless") || is("except") {
         return Some(format!(
-            "there is no `{}`: write `AND NOT ({behind})` before `THEN`",
+            "rules have no `{}`: write `AND NOT ({behind})` before `THEN`",
             found.to_ascii_uppercase()
         ));
     }
@@ -122,7 +126,7 @@ pub(super) fn after_conclusion(before: &str, rest: &str, weighted: bool) -> Opti
         let number = words
             .find(|word| word.parse::<f64>().is_ok())
             .unwrap_or("0.5");
-        return Some(format!("write a weight after `WITH`: `WITH {number}`"));
+        return Some(format!("write `WITH` before the weight: `WITH {number}`"));
     }
     let number = rest.trim_start_matches([',', '(', '[', ' ']);
     let end = number.find(|c: char| !c.is_ascii_digit() && c != '.');
@@ -135,14 +139,14 @@ pub(super) fn after_conclusion(before: &str, rest: &str, weighted: bool) -> Opti
         "," => Some("write `AND` in place of the comma".into()),
         ";" => Some("remove the semicolon".into()),
         "(" | "[" if number.parse::<f64>().is_ok() => {
-            Some(format!("write a weight after `WITH`: `WITH {number}`"))
+            Some(format!("write `WITH` before the weight: `WITH {number}`"))
         }
-        "(" | "%" | "[" => Some("write a weight after `WITH`: `WITH 0.8`".into()),
+        "(" | "%" | "[" => Some("write `WITH` before the weight: `WITH 0.8`".into()),
         _ if weighted => Some("remove everything after the weight".into()),
         _ if is_plain_name(found) => {
             let last = before.split_whitespace().next_back().unwrap_or("");
             Some(format!(
-                "put a name of several words in quotes: `\"{last} {found}\"`"
+                "put a name with spaces in quotes: `\"{last} {found}\"`"
             ))
         }
         _ => None,

@@ -33,7 +33,7 @@ pub(super) fn two_words(
     let message = format!("there is no hedge `{first}`");
     let mut help = suggest(first, hedges.iter().copied()).unwrap_or_default();
     if likely_candidates(first, &hedges).is_empty() {
-        help += &format!("; put a name of two words in quotes: `\"{first} {second}\"`");
+        help += &format!("; put a name with spaces in quotes: `\"{first} {second}\"`");
     }
     Diagnostic::error("rule-syntax", span, message).help(help)
 }
@@ -123,7 +123,7 @@ pub(super) fn is_missing(
         }
         if let Some(variable) = known.variable(name) {
             return Some(format!(
-                "write `{name} IS` and a term: {}",
+                "write `{name} IS` followed by a term: {}",
                 one_of(&variable.terms)
             ));
         }
@@ -155,7 +155,7 @@ pub(super) fn is_missing(
             },
             None => match of {
                 Some(of) => format!("write `{of} IS {name}`"),
-                None => format!("write `{name} IS` and a term"),
+                None => format!("write `{name} IS` followed by a term"),
             },
         });
     }
@@ -206,12 +206,12 @@ pub(super) fn is_missing(
         }
         if kind == "output" && !is_plain_name(value) || first.parse::<f64>().is_ok() {
             let is_formula = value.parse::<f64>().is_err() && value.parse::<Formula>().is_ok();
-            let term = match is_formula {
-                true => format!("a term with `{{function: {value}}}`"),
-                false => format!("a term for {first}"),
+            let (given, term) = match is_formula {
+                true => ("formula", format!("a term with `{{function: {value}}}`")),
+                false => ("number", format!("a term for {first}")),
             };
             return Some(format!(
-                "a conclusion names a term: give `{name}` {term}, and write `{name} IS` and the name of the term"
+                "a conclusion names a term, not a {given}: add {term} to `{name}`, and write `{name} IS` followed by its name"
             ));
         }
     }
@@ -242,7 +242,7 @@ pub(super) fn is_missing(
                 let term = behind_next.split_whitespace().next();
                 match term.filter(|_| next.eq_ignore_ascii_case("TO")) {
                     Some(term) => format!("write `{found} IS {term}`"),
-                    None => format!("write `{found} IS` and a term"),
+                    None => format!("write `{found} IS` followed by a term"),
                 }
             }
             None if is_verb => format!("write `{name} IS {next}`"),
@@ -257,7 +257,7 @@ pub(super) fn is_missing(
     }
     if is_plain_name(found) {
         return Some(format!(
-            "put a name of several words in quotes: `\"{name} {found}\"`"
+            "put a name with spaces in quotes: `\"{name} {found}\"`"
         ));
     }
     sign(rest)

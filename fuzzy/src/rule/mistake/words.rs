@@ -46,9 +46,9 @@ pub(super) fn before_input(rest: &str) -> String {
     match words.as_slice() {
         [hedge, input, is, term, ..] if is.eq_ignore_ascii_case("IS") => {
             let term = term.trim_end_matches(')');
-            format!("write the hedge before the term: `{input} IS {hedge} {term}`")
+            format!("write `{input} IS {hedge} {term}`")
         }
-        _ => "write the hedge before the term: `input IS very term`".into(),
+        _ => "write `input IS very term`".into(),
     }
 }
 
@@ -64,7 +64,7 @@ pub(super) fn name_is_missing(
     let input = what.contains("input");
     let last = before.split_whitespace().next_back().unwrap_or("");
     if input && found.starts_with('/') {
-        return Some("write only `AND` or only `OR`".into());
+        return Some("write either `AND` or `OR`".into());
     }
     if input && is("IS") {
         let term = rest.split_whitespace().nth(1).unwrap_or("term");
@@ -92,26 +92,26 @@ pub(super) fn name_is_missing(
     }
     if found.is_empty() {
         return Some(match what {
-            "the name of an output" => "add a conclusion: `THEN output IS term`".into(),
+            "an output name" => "add a conclusion: `THEN output IS term`".into(),
             _ if input => "add a condition: `input IS term`".into(),
             _ => "add a term".into(),
         });
     }
-    if what == "the name of an output" && is("IF") {
-        return Some("a rule has one `IF`: join the conditions by `AND` before `THEN`".into());
+    if what == "an output name" && is("IF") {
+        return Some(
+            "a rule has only one `IF`: join the conditions with `AND` before `THEN`".into(),
+        );
     }
-    if what == "the name of an output" && found == "(" {
+    if what == "an output name" && found == "(" {
         let (inside, behind) = rest.split_once(')').unwrap_or((rest, ""));
         let inside = inside.trim_start_matches(['(', ' ']);
         let weight = behind.trim().trim_matches(['(', ')', '[', ']']);
-        let weight = weight
-            .parse::<f64>()
-            .ok()
-            .map(|weight| format!(" WITH {weight}"));
-        return Some(format!(
-            "write the conclusion without brackets: `THEN {inside}{}`",
-            weight.unwrap_or_default()
-        ));
+        return Some(match weight.parse::<f64>() {
+            Ok(weight) => format!(
+                "write the conclusion without brackets, and the weight after `WITH`: `THEN {inside} WITH {weight}`"
+            ),
+            Err(_) => format!("write the conclusion without brackets: `THEN {inside}`"),
+        });
     }
     if !input && is("IS") {
         return Some("remove the second `IS`".into());
@@ -128,10 +128,10 @@ pub(super) fn name_is_missing(
             inside.trim()
         ));
     }
-    if what == "the name of an output" && is(":") {
+    if what == "an output name" && is(":") {
         return Some("remove the colon".into());
     }
-    if what == "the name of an output" && is("THEN") {
+    if what == "an output name" && is("THEN") {
         return Some("remove the second `THEN`".into());
     }
     if CONNECTIVES.iter().any(|connective| is(connective)) {
@@ -195,7 +195,7 @@ pub(super) fn at_start(rest: &str) -> String {
         .any(|word| word.eq_ignore_ascii_case("IF"));
     let mut words = rest.split_whitespace();
     if numbered {
-        "begin with `IF`; rules have no names or numbers".into()
+        "begin the rule with `IF`, without a name or number".into()
     } else if words
         .nth(1)
         .is_some_and(|word| word.eq_ignore_ascii_case("IS"))
