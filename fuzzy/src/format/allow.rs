@@ -1,6 +1,6 @@
 //! The list of findings that an author accepts: `allow: [{finding: jump, because: required by the regulation}]`.
 
-use alloc::{format, vec::Vec};
+use alloc::{format, string::String, vec::Vec};
 use core::ops::Range;
 
 use super::optional_text;

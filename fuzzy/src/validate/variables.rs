@@ -176,9 +176,7 @@ impl Validator<'_> {
                     _ if nearest(name, [own.as_str()]).is_some() => {
                         format!("did you mean `{own}`?")
                     }
-                    _ => format!(
-                        "outputs with `weighted_average` or `weighted_sum` can have formulas that use several inputs"
-                    ),
+                    _ => "outputs with `weighted_average` or `weighted_sum` can have formulas that use several inputs".into(),
                 };
                 self.error("wrong-term", here, message, &help);
             }
