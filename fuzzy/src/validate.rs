@@ -141,7 +141,7 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
                 spans.rules_key.clone(),
                 "the rule set has no rules",
             )
-            .help("write rules: `- IF input IS term THEN output IS term`"),
+            .help("add a rule, such as `- IF input IS term THEN output IS term`"),
         );
     }
     for (i, rule) in model.rules.iter().enumerate() {

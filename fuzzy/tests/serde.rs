@@ -333,7 +333,7 @@ fn steps_survive_formats_without_null_and_with_sorted_keys() {
     let sorted = text.replace("{zero: 0, fine: 36, over: }", "{fine: 36, over: , zero: 0}");
     let error = sorted.parse::<Model>().unwrap_err().to_string();
     assert!(
-        error.contains("`over` of the steps of input `dti` has no limit"),
+        error.contains("`over` in the steps of input `dti` has no limit"),
         "{error}"
     );
     assert_eq!(yaml::to_string(&model).parse::<Model>().unwrap(), model);

@@ -43,10 +43,10 @@ pub(crate) struct Arguments {
     json: bool,
     #[command(flatten)]
     claims: rows::OutputClaims,
-    /// Warn where the coverage, the largest firing strength of a rule, is below this value from 0 to 1
+    /// Warn where the coverage, the largest firing strength of any rule, is below this value from 0 to 1
     #[arg(long, value_name = "STRENGTH", default_value_t = 0.5, value_parser = numbers::degree_above_0)]
     coverage: f64,
-    /// Also exit with 1 for findings of this severity [default: only for errors]
+    /// Also exit with 1 for findings of this severity or a higher one [default: only for errors]
     #[arg(long, value_name = "SEVERITY")]
     deny: Option<DenyLevel>,
 }

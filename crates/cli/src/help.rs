@@ -13,7 +13,7 @@ Examples:
   flagred plot my-rules.yaml                     the terms of its variables
   flagred map my-rules.yaml                      the output over the inputs
   flagred learn my-rules.yaml rows.csv --output learned.yaml   rules from a table
-  flagred tune learned.yaml rows.csv --output tuned.yaml    and their numbers
+  flagred tune learned.yaml rows.csv --output tuned.yaml    fit the numbers of the rules
   flagred identify rows.csv --target risk --output found.yaml  inputs, terms and rules from a table
   flagred simplify tuned.yaml --output shorter.yaml         the same with fewer rules
   flagred watch udpin:0.0.0.0:14550              assess a flight live

@@ -107,7 +107,7 @@ enum Command {
     /// Serve an editor: findings, completion, renaming and more for rule sets and profiles (language server protocol)
     #[command(after_help = help::LSP)]
     Lsp(lsp::Arguments),
-    /// Open the page in the browser: look into flights, edit a rule set and see its map change
+    /// Open the studio, a page in the browser: look into flights, edit a rule set and see its map change
     #[command(after_help = help::STUDIO)]
     Studio(studio::Arguments),
     /// Draw or tabulate the output of a rule set over its inputs, or compare it with a table

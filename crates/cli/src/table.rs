@@ -97,7 +97,7 @@ pub(crate) struct Layout {
     #[arg(long, value_name = "NAME=COLUMN", value_parser = pair)]
     column: Vec<(String, String)>,
 
-    /// The character between cells: `;`, `tab`
+    /// The character between cells, such as `;`, or `tab`
     #[arg(long, value_name = "CHARACTER", default_value = ",", value_parser = delimiter)]
     pub(crate) delimiter: u8,
 }

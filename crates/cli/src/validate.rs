@@ -35,7 +35,7 @@ pub(crate) struct Arguments {
     #[arg(long = "profile", value_name = "NAME|FILE")]
     profiles: Vec<String>,
 
-    /// How many seconds ahead the risk should predict
+    /// How many seconds ahead the risk predicts
     #[arg(long, value_name = "SECONDS", default_value_t = 5.0, value_parser = numbers::positive, conflicts_with = "rows")]
     horizon: f64,
 

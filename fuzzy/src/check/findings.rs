@@ -349,9 +349,9 @@ impl ModelPositions<'_> {
         };
         let keyword = one.term.as_deref().filter(|term| Rule::is_keyword(term));
         let help = match keyword {
-            Some(term) => format!(
-                "`{term}` is a word of the rule language: a rule names the term in quotes, `IS \"{term}\"`"
-            ),
+            Some(term) => {
+                format!("`{term}` is a keyword: a rule names the term in quotes, `IS \"{term}\"`")
+            }
             None => "write a rule for it, or remove it".into(),
         };
         Diagnostic::warning("unused", self.term(one), message).help(help)

@@ -38,7 +38,7 @@ pub(super) fn extended(
     };
     if let (Some(_), Some(second)) = (blur, scale.or(lag)) {
         let message = format!("{what} has both `blur` and `{}`", second.key);
-        let help = "keep one: each of them defines the lower membership function";
+        let help = "keep only one of the two: each defines the lower membership function";
         let finding = Diagnostic::error("duplicate-key", second.key_span.clone(), message);
         findings.push(finding.help(help));
         return None;
@@ -274,7 +274,7 @@ fn share(
         && distance < width
     {
         finding.help = Some(format!(
-            "`blur` is a fraction of the width of the range: for {distance} of {width} write `{}`",
+            "`blur` is a fraction of the width of the range: for {distance} in a range of width {width}, write `{}`",
             rounded(distance / width)
         ));
     }
@@ -307,7 +307,7 @@ fn lags(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<(f64,
 /// A description of a range of numbers, and a function that tests whether a number is in the range.
 type NumberRange = (&'static str, fn(f64) -> bool);
 
-const BELOW_1: NumberRange = ("at least 0 and below 1", |x| (0.0..1.0).contains(&x));
+const BELOW_1: NumberRange = ("at least 0 and less than 1", |x| (0.0..1.0).contains(&x));
 
 fn number_in(
     what: &str,
@@ -450,7 +450,7 @@ mod tests {
         refused(
             "terms: {warm: {triangle: [4, 8, 16], blur: 0.1, lower_lag: 0.1}}",
             "term `warm` of input `x` has both `blur` and `lower_lag`",
-            "keep one: each of them defines the lower membership function",
+            "keep only one of the two: each defines the lower membership function",
         );
         refused(
             "terms: {warm: {triangle: [4, 8, 16], lower_scale: 1.5}}",

@@ -157,7 +157,7 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
     let fields = tree.fields("the rule set", &KEYS, "", &mut unknown_keys)?;
     let before = findings.len();
     let version = fields.get("fuzzy").map(|node| {
-        let version = node.whole("the format version `fuzzy`", 0, findings);
+        let version = node.whole("the format version in `fuzzy`", 0, findings);
         let is_open = |help: &String| help.starts_with("write a whole number");
         if let Some(finding) = findings.get_mut(before)
             && finding.help.as_ref().is_some_and(is_open)
@@ -173,7 +173,7 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
         let message = format!("format version `{}` is not supported", written.text);
         findings.push(
             Diagnostic::error("unsupported-version", node.span.clone(), message).help(format!(
-                "this program reads version {VERSION}; a newer version of the program may read this file"
+                "this program reads format version {VERSION}; a newer release of the program may read this file"
             )),
         );
         // In another version, all other keys may have a different meaning.
@@ -369,7 +369,7 @@ fn optional_text(fields: &Fields<'_>, key: &str, findings: &mut Vec<Diagnostic>)
     let text = &node.words(&format!("`{key}`"), &help, findings)?.text;
     let inner = text.trim_matches(is_curly_quote);
     if text.starts_with(is_curly_quote) && text.ends_with(is_curly_quote) && !inner.is_empty() {
-        let message = format!("the typographic quotes are read as a part of `{key}`");
+        let message = format!("the typographic quotes become part of the value of `{key}`");
         let finding = Diagnostic::warning("typographic-quotes", node.span.clone(), message);
         findings.push(finding.help(format!("write straight quotes: `{key}: \"{inner}\"`")));
     }

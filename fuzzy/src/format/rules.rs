@@ -30,12 +30,14 @@ pub(super) fn read(
             .as_text()
             .is_some_and(|text| text.trim_start().starts_with("- "));
         findings.push(finding.help(match &node.value {
-            _ if is_list => "remove the `|` or `>` after `rules:`: it makes a text of the list",
+            _ if is_list => {
+                "remove the `|` or `>` after `rules:`, which turns the list into a text"
+            }
             Value::Scalar(text) if text.text.trim_end().contains('\n') => {
                 "remove the `|` or `>` after `rules:`, and begin the line of each rule with `- IF`"
             }
-            Value::Mapping(_) => "begin the line of each rule with `- IF`; rules have no names",
-            _ => "begin the line of each rule with `- IF`",
+            Value::Mapping(_) => "begin the line of each rule with `- IF`; rules cannot have names",
+            _ => "write each rule on its own line under `rules:`, beginning with `- IF`",
         }));
         return None;
     };
@@ -232,18 +234,30 @@ fn colon(what: &str, key: &Node, value: &Node) -> Option<Diagnostic> {
     };
     let after_keyword = keyword.map(|keyword| format!("remove the colon after `{keyword}`"));
     let remark = format!(
-        "remove the colon, or turn the text into a comment: `# {}`",
+        "remove the colon and the text after it, or write that text as a comment: `# {}`",
         value.as_text().unwrap_or("...")
     );
     let (message, help) = if let Some(help) = after_keyword.as_deref().filter(|_| is_rule(key)) {
-        (format!("{what} contains a colon"), help)
+        (
+            format!("{what} contains a colon, so YAML reads it as a key with a value"),
+            help,
+        )
     } else if key.as_text().is_some_and(is_of_fis) {
-        let help = "write it in words: `IF input IS term THEN output IS term`; a whole file in FIS can be imported";
-        (format!("{what} consists of numbers, as in FIS"), help)
+        let help = "write it in words: `IF input IS term THEN output IS term`; a whole FIS file can be imported";
+        (
+            format!("{what} is written in numbers, as in the FIS format"),
+            help,
+        )
     } else if let Some(help) = in_place_of_then(key, value).filter(|_| is_rule(key)) {
-        (format!("{what} contains a colon"), help)
+        (
+            format!("{what} contains a colon, so YAML reads it as a key with a value"),
+            help,
+        )
     } else if is_rule(key) {
-        (format!("{what} contains a colon"), remark.as_str())
+        (
+            format!("{what} contains a colon, so YAML reads it as a key with a value"),
+            remark.as_str(),
+        )
     } else if is_rule(value) && !matches!(&key.value, Value::Scalar(key) if key.text == "rule") {
         let help = "write `- IF ... THEN ...`, without a name or number";
         (format!("{what} starts with a name, not with `IF`"), help)

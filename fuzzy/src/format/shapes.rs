@@ -53,7 +53,7 @@ pub(super) fn read(
             Value::Scalar(name) if known.clone().any(|known| known == name.text) => {
                 let parameters = shapes.next().map(|other| other.value.to_line());
                 Some(format!(
-                    "write the membership function as the key: `{{{}: {}}}`",
+                    "write the name of the membership function as the key: `{{{}: {}}}`",
                     name.text,
                     parameters.unwrap_or_else(|| "...".into())
                 ))
@@ -318,7 +318,7 @@ fn spelling(form: &ShapeForm) -> String {
     let list = names.join(", ");
     match names.as_slice() {
         [only] => format!("write `{}: {only}` with a number for `{only}`", form.name),
-        _ if form.as_list() => format!("write `{}: [{list}]`, from left to right", form.name),
+        _ if form.as_list() => format!("write `{}: [{list}]`, in ascending order", form.name),
         _ => {
             let named: Vec<String> = names.iter().map(|p| format!("{p}: ...")).collect();
             format!(

@@ -100,7 +100,7 @@ fn of_names(node: &Node, variable: &Variable) -> Option<String> {
 
 /// Reads the limit of a term: a number, null, or `{below: 36}` as in the lists of serde.
 fn limit(what: &str, entry: &Entry<'_>, findings: &mut Vec<Diagnostic>) -> Option<f64> {
-    let limit = format!("the limit of `{}` of {what}", entry.key);
+    let limit = format!("the limit of term `{}` of {what}", entry.key);
     let number = match &entry.value.value {
         Value::Mapping(_) => {
             let fields = entry.value.fields(&limit, &["below"], HELP, findings)?;
@@ -135,7 +135,9 @@ fn advice(term: &str, limit: &Node) -> Option<String> {
         || limit.is_some_and(|limit| !limit.is_finite())
         || limit.is_none() && text.to_ascii_lowercase().contains("inf");
     match is_open {
-        true => Some(format!("the last term has no limit: write `{term}:`")),
+        true => Some(format!(
+            "the last term extends to the end of the range: write `{term}:` without a limit"
+        )),
         false => limit.map(|_| format!("write `{term}: {number}`")),
     }
 }
@@ -173,7 +175,7 @@ fn order(
         && limits.len() == last
     {
         let message = format!(
-            "the term `{}` of the steps of {what} has no limit, but is not the last one",
+            "the term `{}` in the steps of {what} has no limit, but only the last term may omit it",
             entry.key
         );
         error("wrong-parameter", entry.key_span.clone(), message);
@@ -182,7 +184,7 @@ fn order(
         && open.is_none()
     {
         let message = format!(
-            "the limit {limit} of `{}`, the first term of the steps of {what}, is the low end of the range",
+            "the limit {limit} of the first term `{}` of {what} is the low end of the range, which leaves no room for the term",
             entry.key
         );
         error("wrong-parameter", entry.value.span.clone(), message);
@@ -192,11 +194,10 @@ fn order(
                 && low < high
             {
                 let message = format!(
-                    "the limit {low} of `{}` of {what} is below the limit {high} of `{}`",
+                    "the limit {low} of term `{}` of {what} is less than {high}, the limit of the term before it, `{}`",
                     right.key, left.key
                 );
-                let help =
-                    "write the terms from left to right: each limit is above the one before it";
+                let help = "write the terms in ascending order: each limit must be greater than the one before it";
                 let span = right.value.span.clone();
                 let finding = Diagnostic::error("inverted-parameters", span, message);
                 findings.push(finding.help(help));
@@ -218,7 +219,7 @@ fn in_order(steps: &[(Entry<'_>, Option<f64>)]) -> String {
     });
     let terms: Vec<String> = terms.collect();
     format!(
-        "a number is the end of its term, not its beginning: write `steps: {{{}}}`",
+        "a limit is where its term ends, not where it begins: write `steps: {{{}}}`",
         terms.join(", ")
     )
 }
@@ -237,15 +238,17 @@ fn check(
     if steps.len() < 2 {
         let message = format!("the steps of {what} need at least two terms");
         let help =
-            "add a term: each term except the last has a limit, such as `steps: {low: 10, high: }`";
+            "add a term, and give each term except the last a limit: `steps: {low: 10, high: }`";
         wrong(node.span.clone(), "wrong-parameter", message, help);
         return;
     }
     if let Some((entry, Some(limit))) = steps.last() {
         let name = entry.key;
-        let message = format!("the last term `{name}` of the steps of {what} has a limit, {limit}");
+        let message = format!(
+            "the last term `{name}` in the steps of {what} must not have a limit, but has {limit}"
+        );
         let help = format!(
-            "the last term reaches to the end of the range: write `{name}:` without a number, or add a term after it"
+            "the last term extends to the end of the range: write `{name}:` without a limit, or add a term after it"
         );
         wrong(entry.value.span.clone(), "wrong-parameter", message, &help);
     }
@@ -257,22 +260,22 @@ fn check(
         let span = right.value.span.clone();
         match (below, above) {
             (None, None) => {
-                let message = format!("the terms `{other}` and `{name}` of {what} have no limit");
-                let help = format!(
-                    "write a limit for `{other}`, such as `{other}: 10`; only the last term has none"
+                let message = format!(
+                    "the terms `{other}` and `{name}` of {what} have no limit, but only the last term may omit it"
                 );
+                let help = format!("write a limit for `{other}`");
                 wrong(right.key_span.clone(), "wrong-parameter", message, &help);
                 break;
             }
             (Some(below), Some(above)) if below == above => {
                 let message = format!(
-                    "the terms `{other}` and `{name}` of {what} have the same limit {above}"
+                    "the terms `{other}` and `{name}` of {what} have the same limit, {above}"
                 );
                 wrong(
                     span,
                     "inverted-parameters",
                     message,
-                    "give each term a different limit",
+                    "make each limit greater than the one before it",
                 );
             }
             _ => {}
@@ -285,7 +288,7 @@ fn check(
             && (*limit <= low || *limit > high)
         {
             let message = format!(
-                "the limit {limit} of `{}` does not divide the range [{low}, {high}] of {what}",
+                "the limit {limit} of term `{}` is not between the ends of the range [{low}, {high}] of {what}",
                 entry.key
             );
             let span = entry.value.span.clone();

@@ -144,7 +144,7 @@ fn term(
         let has_functions = items.iter().any(|item| item.children() > 0);
         findings.push(finding.help(match items {
             [upper, lower] if has_functions => format!(
-                "name both membership functions: `{{upper: {}, lower: {}}}`",
+                "label the two membership functions `upper` and `lower`: `{{upper: {}, lower: {}}}`",
                 upper.to_line(),
                 lower.to_line()
             ),
@@ -250,7 +250,10 @@ fn interval(
     let mut others = fields.entries().iter();
     let other = others.find(|entry| !["upper", "lower"].contains(&entry.key));
     if let Some(other) = other {
-        let message = format!("{term} has `{}` beside `upper` and `lower`", other.key);
+        let message = format!(
+            "{term} cannot have `{}` outside of `upper` and `lower`",
+            other.key
+        );
         let help = match other.key {
             "height" => format!(
                 "move `height: {}` into `upper`, into `lower`, or into both",

@@ -230,10 +230,10 @@ fn samples(
 ) -> Option<Sampling> {
     let number = node.as_number_text().unwrap_or("1000");
     let help = &format!(
-        "write a whole number, such as `samples: {{midpoint: {number}}}` or `samples: {{trapezoid: {number}}}`"
+        "write the sampling method and a whole number: `samples: {{midpoint: {number}}}` or `samples: {{trapezoid: {number}}}`"
     );
     let Value::Mapping(_) = &node.value else {
-        let finding = node.unexpected("a sampling rule and its number of samples");
+        let finding = node.unexpected("a sampling method and the number of samples");
         findings.push(finding.help(help));
         return None;
     };
@@ -353,9 +353,12 @@ fn variable(
             Diagnostic::error(
                 "duplicate-key",
                 second.key_span.clone(),
-                format!("{what} has both `{}` and `{}`", first.key, second.key),
+                format!(
+                    "{what} defines its terms twice, in `{}` and in `{}`",
+                    first.key, second.key
+                ),
             )
-            .help("keep one, with all terms of the variable"),
+            .help("keep one of the two keys, and define all terms of the variable in it"),
         ),
         (Some(entry), None) => {
             let read = match entry.key {

@@ -173,14 +173,14 @@ impl RuleMistake<'_> {
                         Some(format!("write `{word}` in place of `{found}`"))
                     }
                     _ if found.eq_ignore_ascii_case("IF") => {
-                        Some("a rule has only one `IF`: write `AND` in place of the second `IF`".into())
+                        Some("a rule can have only one `IF`: write `AND` in place of the second `IF`".into())
                     }
                     _ if found.eq_ignore_ascii_case("XOR") => Some(
                         "rules have no `XOR`: for conditions a and b, write `(a AND NOT b) OR (NOT a AND b)`"
                             .into(),
                     ),
                     _ if ["FOR", "DURING", "SINCE", "WITHIN"].iter().any(|word| found.eq_ignore_ascii_case(word)) => Some(
-                        "a rule reads the inputs of one moment: add an input that measures the duration, and use a term of that input".into(),
+                        "a rule reads only the current values of its inputs: add an input for the duration, and use a term of that input".into(),
                     ),
                     // For example `IF x IS low: y IS high`.
                     _ if found == ":" => Some(match keyword(rest.get(1..).unwrap_or(""), "THEN") {
@@ -231,7 +231,9 @@ impl RuleMistake<'_> {
                         kind: RuleMistakeKind::Connective,
                     };
                     let diagnostic = mistake.explain(text, known);
-                    let help = format!("`{found}` is a term: write `AND`, `OR` or `THEN` after it");
+                    let help = format!(
+                        "`{second}` cannot follow the term `{found}`: write `AND`, `OR` or `THEN` after `{found}`"
+                    );
                     let help = diagnostic.help.clone().unwrap_or(help);
                     return diagnostic.help(help);
                 }

@@ -28,7 +28,7 @@ pub fn percentage_of_share(share: f64) -> f64 {
 pub fn percentage_advice(number: f64) -> Option<String> {
     (10.0..=100.0)
         .contains(&number)
-        .then(|| format!("for {number} % write `{}`", number / 100.0))
+        .then(|| format!("if you mean {number} %, write `{}`", number / 100.0))
 }
 
 /// Returns advice for a text that is not a number, but was probably meant as one.
@@ -48,7 +48,7 @@ pub fn number_advice(text: &str) -> Option<String> {
         let percent = text.trim_end_matches('%').trim();
         return Some(match share {
             0.0 => "write only the number: `0`".into(),
-            _ => format!("write `{percent}`, or `{share}` if the value is a fraction"),
+            _ => format!("write `{percent}`, or `{share}` if the input is a fraction from 0 to 1"),
         });
     }
     if let Some(positive) = text
@@ -167,9 +167,12 @@ mod tests {
             ("\u{2212}12", "this dash is not a minus sign: write `-12`"),
             (
                 "15.48 %",
-                "write `15.48`, or `0.1548` if the value is a fraction",
+                "write `15.48`, or `0.1548` if the input is a fraction from 0 to 1",
             ),
-            ("36 %", "write `36`, or `0.36` if the value is a fraction"),
+            (
+                "36 %",
+                "write `36`, or `0.36` if the input is a fraction from 0 to 1",
+            ),
             ("0%", "write only the number: `0`"),
             ("22V", "write the number without its unit: `22`"),
             (

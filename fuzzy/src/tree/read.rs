@@ -522,7 +522,12 @@ impl Node {
                         let near = text.parse::<f64>().map_or(0.0, libm::round);
                         let near = if near < 1e6 { near } else { 0.0 };
                         let example = (near as u64).max(least).max(1);
-                        format!("write a whole number such as `{example}`")
+                        let sign = if text.starts_with('-') {
+                            " that is not negative,"
+                        } else {
+                            ""
+                        };
+                        format!("write a whole number{sign} such as `{example}`")
                     }
                 }
             }

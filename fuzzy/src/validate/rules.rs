@@ -88,10 +88,10 @@ impl<'m> Validator<'m> {
         };
         let (output, input) = (&read.variable.text, &set.output.text);
         let message = format!(
-            "the condition reads the output `{output}`, and the conclusion sets the input `{input}`"
+            "input and output are swapped: the condition reads the output `{output}`, and the conclusion sets the input `{input}`"
         );
         let finding = Diagnostic::error("input-in-conclusion", read.variable.span.clone(), message);
-        Some(finding.help(format!("exchange them: `{meant}`")))
+        Some(finding.help(format!("swap them: `{meant}`")))
     }
 
     /// Validates a condition. `depth` is the number of enclosing NOTs and brackets in the text of the rule.

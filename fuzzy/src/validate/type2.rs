@@ -36,7 +36,7 @@ impl Validator<'_> {
                 first.start..last.end
             });
             let message = format!(
-                "the lower membership function of term `{}` of {what} is above the upper one: at {x} the lower degree is {lower}, the upper one {upper}",
+                "the lower membership function of term `{}` of {what} exceeds the upper one: at {x}, the lower degree is {lower}, but the upper degree is {upper}",
                 term.name,
                 x = rounded(x),
                 lower = rounded(lower),
@@ -62,18 +62,18 @@ impl Validator<'_> {
             let lower = &lower.membership_function;
             if output.defuzzifier.takes_numbers() {
                 let message = format!(
-                    "{what} has a lower membership function, but the defuzzifier of the output needs numbers"
+                    "{what} has `upper` and `lower`, but the defuzzifier of the output needs a single number for each term"
                 );
-                let help = "write one number or linear function: the interval of a weighted output comes from the terms of its inputs";
+                let help = "write a single constant or linear function; the output becomes an interval if terms of its inputs have `upper` and `lower`";
                 self.error("wrong-term", here, message, help);
             } else if let MembershipFunction::Function { formula } = lower {
                 let spans = spans.lower.as_deref().unwrap_or(&no_spans);
                 self.own_formula(&what, &output.variable, formula, spans);
             } else if lower.at() != term.membership_function.at() {
                 let message = format!(
-                    "the membership functions of {what} are not both singletons at one position"
+                    "`upper` and `lower` of {what} must be two singletons at the same position, or two fuzzy sets"
                 );
-                let help = "write two singletons with the same position and different heights, or two sets such as `triangle`";
+                let help = "write two singletons with the same position and different heights, or two fuzzy sets such as `triangle`";
                 self.error("wrong-term", here, message, help);
             } else if lower.number().is_some() || matches!(lower, MembershipFunction::Linear { .. })
             {
@@ -137,15 +137,17 @@ impl Validator<'_> {
             };
             if !supported {
                 let message = format!(
-                    "output `{name}` depends on type-2 terms, but the defuzzifier `{}` cannot compute an interval",
+                    "output `{name}` depends on type-2 terms, so its value is an interval, which the defuzzifier `{}` cannot compute",
                     output.defuzzifier.word()
                 );
                 let help = "write `defuzzifier: centroid`, `weighted_average` or `weighted_sum`, or remove the keys that make terms type-2, such as `blur` or `lower`";
                 self.error("unsupported-type-2", &spans.name, message, help);
             }
             if output.samples.is_some() {
-                let message = format!("output `{name}` depends on type-2 terms and has `samples`");
-                let help = "remove `samples`: the interval of such an output is always exact";
+                let message =
+                    format!("output `{name}` depends on type-2 terms, so it cannot use `samples`");
+                let help =
+                    "remove `samples`: the interval of such an output is always computed exactly";
                 self.error(
                     "unsupported-type-2",
                     or(&spans.samples, &spans.name),
@@ -159,7 +161,7 @@ impl Validator<'_> {
             let of_block = block.and_then(|block| spans.blocks.get(block));
             let here = of_block.map_or(&spans.activation, |block| &block.activation);
             let message = format!(
-                "rule {} reads a type-2 term, so its firing strength is an interval, and `activation` cannot rank intervals",
+                "rule {} uses a type-2 term, so its firing strength is an interval, which `activation` cannot rank",
                 index + 1
             );
             let help = "remove `activation`, or the keys that make terms type-2, such as `blur` or `lower`";

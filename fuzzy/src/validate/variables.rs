@@ -62,7 +62,7 @@ impl Validator<'_> {
             let here = or(&spans.height, &spans.name);
             let message = format!("the height {height} of {what} is outside (0, 1]");
             let help = percentage_advice(height).unwrap_or_else(|| {
-                "the height is the largest degree of the term: write a number greater than 0 and at most 1".into()
+                "the height is the largest degree of the membership function: write a number greater than 0 and at most 1".into()
             });
             self.error("wrong-parameter", here, message, &help);
         }
@@ -284,9 +284,9 @@ impl Validator<'_> {
                 }
                 MembershipFunction::Singleton { .. } if !weighted && !output.is_discrete() => {
                     let message = format!(
-                        "{what} is a singleton, which has no area, but other terms of the output are fuzzy sets"
+                        "{what} is a singleton, which has no area, so it cannot be combined with fuzzy sets in other terms"
                     );
-                    let help = "write singletons for all terms of the output, or a narrow set such as `rectangle` for this one";
+                    let help = "write singletons for all terms of the output, or a narrow fuzzy set such as `rectangle` for this term";
                     self.error("wrong-term", here, message, help);
                 }
                 MembershipFunction::Singleton { .. }
@@ -315,15 +315,14 @@ impl Validator<'_> {
         };
         if output.defuzzifier == Defuzzifier::Bisector {
             let message = format!(
-                "{subject} {are} singleton{kind} without an area, but the defuzzifier `bisector` divides an area"
+                "{subject} {are} singleton{kind}, so the defuzzifier `bisector` has no area to divide"
             );
-            let help =
-                "write `defuzzifier: centroid`, which weights the positions by their degrees";
+            let help = "write `defuzzifier: centroid`, which weights the position of each singleton by its degree";
             self.error("wrong-term", here, message, help);
             return;
         }
         let message = format!(
-            "{subject} {are} fuzzy set{kind}, but the defuzzifier `{}` needs numbers",
+            "{subject} {are} fuzzy set{kind}, but the defuzzifier `{}` needs a number for each term",
             output.defuzzifier.word()
         );
         let is_monotone = terms
@@ -338,8 +337,10 @@ impl Validator<'_> {
         let numbers: Vec<String> = numbers.collect();
         let numbers = format!("`{}`", numbers.join(", "));
         let help = match misfits.len() == variable.terms.len() {
-            true => format!("write `defuzzifier: {defuzzifier}`, or numbers such as {numbers}"),
-            false => format!("make it a number like the other terms, such as {numbers}"),
+            true => format!(
+                "write `defuzzifier: {defuzzifier}`, or make the terms numbers, such as {numbers}"
+            ),
+            false => format!("make it a number, as the other terms are: {numbers}"),
         };
         self.error("wrong-term", here, message, &help);
     }
@@ -430,13 +431,12 @@ impl Validator<'_> {
         for (i, term) in variable.terms.iter().enumerate() {
             if is_empty(output, term) {
                 let here = spans.terms.get(i).map_or(0..0, |term| term.name.clone());
-                let lacks = if output.is_discrete() {
-                    "does not lie"
-                } else {
-                    "has no area"
+                let fault = match output.is_discrete() {
+                    true => "is outside",
+                    false => "has no area within",
                 };
                 let message = format!(
-                    "term `{}` of {what} {lacks} within the range [{}, {}]",
+                    "term `{}` of {what} {fault} the range [{}, {}]",
                     term.name, variable.low, variable.high
                 );
                 let help = "widen the range or move the term";

@@ -19,9 +19,13 @@ pub(super) fn cause(text: &str) -> Option<Diagnostic> {
         Some(Diagnostic::error("yaml-syntax", at..at + length, message).help(help))
     };
     if let Some(&(start, line)) = lines.iter().find(|(_, line)| line.starts_with("<<<<<<< ")) {
-        let help =
-            "keep one of the two versions, and remove the lines `<<<<<<<`, `=======` and `>>>>>>>`";
-        return syntax(start, line.len(), "a merge conflict is not resolved", help);
+        let help = "keep one of the two versions, and remove the lines that begin with `<<<<<<<`, `=======` and `>>>>>>>`";
+        return syntax(
+            start,
+            line.len(),
+            "a merge conflict has not been resolved",
+            help,
+        );
     }
     if let Some(finding) = foreign(text).or_else(|| marked(&lines)) {
         return Some(finding);
@@ -37,7 +41,7 @@ pub(super) fn cause(text: &str) -> Option<Diagnostic> {
             let blank = indented.get(found..).and_then(|rest| rest.chars().next());
             let length = blank.map_or(0, char::len_utf8);
             let help =
-                "indent with plain spaces; text that is copied from a web page may contain others";
+                "indent with plain spaces; text copied from a web page may contain no-break spaces";
             return syntax(
                 at + found,
                 length,
@@ -111,7 +115,7 @@ pub(super) fn line(text: &str, error: &SyntaxError) -> Option<Diagnostic> {
         let at = before.trim_end().len() - key.len();
         let end = rest.find([']', '}', '\n']).map_or(0, |end| end + 1);
         let value = rest.get(..end)?;
-        let message = String::from("a colon is missing before a bracket");
+        let message = String::from("a colon is missing after this key");
         let finding = Diagnostic::error("yaml-syntax", at..at + key.len(), message);
         let help = specific_or(
             text,
@@ -206,7 +210,7 @@ fn second_colon(text: &str, start: usize) -> Option<Diagnostic> {
     let is_second_key = before.rsplit_once(", ").is_some_and(|(_, key)| is_key(key));
     let (message, help) = match is_second_key {
         true => (
-            "this line contains a second key",
+            "a second key begins on this line",
             "write each key on a line of its own".into(),
         ),
         false => {
@@ -232,7 +236,7 @@ fn further_right(text: &str, start: usize) -> Option<Diagnostic> {
             specific_or(
                 text,
                 format!("begin it in the same column as `{key}:`"),
-                "begin the keys of one mapping in the same column",
+                "begin all keys of a mapping in the same column",
             ),
         ),
         None if is_more => (
@@ -265,7 +269,7 @@ fn missing_space_after_colon(text: &str, start: usize) -> Option<Diagnostic> {
     if !is_key(key) || value.is_empty() || value.starts_with([' ', '/']) || value.contains(": ") {
         return None;
     }
-    let message = "a space is missing after this colon";
+    let message = "a space is missing after the colon";
     let finding = Diagnostic::error("yaml-syntax", at..at + content.len(), message);
     Some(finding.help(specific_or(
         text,
@@ -312,7 +316,7 @@ fn no_key(text: &str, start: usize) -> Option<Diagnostic> {
         .iter()
         .any(|word| word.eq_ignore_ascii_case(first));
     (is_plain && !continues && !is_of_rule).then(|| {
-        let message = "the line is plain text, without a key";
+        let message = "expected a key, found a line of plain text";
         let finding = Diagnostic::error("yaml-syntax", at..at + content.len(), message);
         finding.help("remove the line, or begin it with `#` to make it a comment")
     })
@@ -336,7 +340,7 @@ fn open_quote(text: &str, start: usize) -> Option<Diagnostic> {
         }
         at += line.len();
     }
-    let message = "the quote is not closed in its line";
+    let message = "the quote is not closed on this line";
     let finding = open.map(|at| Diagnostic::error("yaml-syntax", at..at + 1, message));
     finding.map(|finding| finding.help("add the closing quote"))
 }
@@ -367,7 +371,7 @@ fn indented_more(text: &str, start: usize) -> Option<Diagnostic> {
             let key = line.split(':').next().unwrap_or("");
             return Some(finding.help(match is_key_of_variable(key) {
                 true => "if the name of an input or output is missing, write it above this line",
-                false => "begin the keys of one mapping in the same column",
+                false => "begin all keys of a mapping in the same column",
             }));
         }
         if indent(line) == here {
@@ -389,7 +393,7 @@ fn is_key(key: &str) -> bool {
 /// beginning of the line at `start` or of the line before it.
 fn brackets_behind_colon(text: &str, at: usize, start: usize) -> Option<Diagnostic> {
     let finding = |colon: usize| {
-        let message = String::from("a space is missing after this colon");
+        let message = String::from("a space is missing after the colon");
         Diagnostic::error("yaml-syntax", colon..colon + 1, message)
             .help("write a space after the colon")
     };

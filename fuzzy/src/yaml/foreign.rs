@@ -20,7 +20,7 @@ pub(super) fn foreign(text: &str) -> Option<Diagnostic> {
     let mut content = lines.iter().filter(|(_, line)| !comment(line));
     let &first = content.next()?;
     if first.1.starts_with("```") {
-        let message = String::from("a Markdown fence surrounds the rule set");
+        let message = String::from("the rule set is inside a Markdown code fence");
         let help = "remove the lines that begin with three backticks";
         return foreign(first, message, help);
     }

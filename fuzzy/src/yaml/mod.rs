@@ -185,7 +185,8 @@ fn build(text: &str) -> Result<Node, Box<SyntaxError>> {
         let bytes = span.byte_range().unwrap_or(0..0);
         if document.is_some() && matches!(event, Event::DocumentStart(..)) {
             let from = bytes.start;
-            let finding = Diagnostic::error("yaml-syntax", bytes, "a second document begins here");
+            let finding =
+                Diagnostic::error("yaml-syntax", bytes, "a second YAML document begins here");
             let rest = text
                 .get(from..)
                 .unwrap_or("")
@@ -198,8 +199,8 @@ fn build(text: &str) -> Result<Node, Box<SyntaxError>> {
                 .is_some_and(|rest| rest.starts_with(':'));
             return Err(finding
                 .help(match is_complete {
-                    true => "a file contains one document: remove the line `---` and everything after it",
-                    false => "a file contains one document: remove the line `---`",
+                    true => "a file can contain only one document: remove the line `---` and everything after it",
+                    false => "a file can contain only one document: remove the line `---`",
                 })
                 .into());
         }
@@ -247,7 +248,7 @@ fn build(text: &str) -> Result<Node, Box<SyntaxError>> {
                 let depth = target.depth + open.len();
                 if from_aliases > MAX_FROM_ALIASES || depth > DEEPEST {
                     let message = alloc::format!(
-                        "aliases expand to more than {MAX_FROM_ALIASES} values or {DEEPEST} levels"
+                        "aliases expand to more than {MAX_FROM_ALIASES} values or more than {DEEPEST} levels of nesting"
                     );
                     let finding = Diagnostic::error("yaml-too-large", bytes, message);
                     let help = "write the values out, or use fewer aliases";
@@ -317,7 +318,11 @@ fn refuse_tag(span: &Span, tagged: bool) -> Result<(), Box<SyntaxError>> {
     }
     let tag = span.tag_span().unwrap_or(*span);
     let bytes = tag.byte_range().unwrap_or(0..0);
-    let finding = Diagnostic::error("yaml-syntax", bytes, "tags are not supported");
+    let finding = Diagnostic::error(
+        "yaml-syntax",
+        bytes,
+        "this is a tag of YAML, which is not supported",
+    );
     Err(finding.help("remove the tag").into())
 }
 

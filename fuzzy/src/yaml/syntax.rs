@@ -87,7 +87,7 @@ fn quotes(text: &str, at: usize, kind: &ErrorKind) -> Option<Diagnostic> {
             Some(finding_at(text, open, "the quote is never closed", help))
         }
         ErrorKind::InvalidTrailingSingleQuotedScalar => {
-            let message = "the text in single quotes ends before this point";
+            let message = "there is text after the closing single quote";
             let help =
                 "write `''` for an apostrophe in single quotes, or put the text in double quotes";
             Some(finding_at(
@@ -98,7 +98,7 @@ fn quotes(text: &str, at: usize, kind: &ErrorKind) -> Option<Diagnostic> {
             ))
         }
         ErrorKind::InvalidTrailingDoubleQuotedScalar => {
-            let message = "the text in double quotes ends before this point";
+            let message = "there is text after the closing double quote";
             let help =
                 "write `\\\"` for a quote in double quotes, or put the text in single quotes";
             Some(finding_at(
@@ -211,20 +211,21 @@ fn of_one_word(text: &str, at: usize, kind: &ErrorKind) -> Option<Diagnostic> {
             let end = rest.find([' ', ',', ']', '}']).unwrap_or(rest.len());
             let name = rest.get(1..end)?;
             let help = "write the value here, or define the alias before it is used";
-            let specific =
-                format!("write the value here, or mark the value that is meant with `&{name}`");
+            let specific = format!(
+                "write the value here, or mark the intended value with the anchor `&{name}`"
+            );
             let help = specific_or(text, specific, help);
             let span = at..at + end;
-            Some(Diagnostic::error("yaml-syntax", span, "the alias is not defined").help(help))
+            Some(Diagnostic::error("yaml-syntax", span, "this alias has no anchor").help(help))
         }
         ErrorKind::MissingAnchorOrAliasName if rest.starts_with('*') => {
-            let message = "`*` does not begin an entry of a list";
+            let message = "an entry of a list begins with `-`, not with `*`";
             Some(finding_at(text, at, message, "write `-` in place of `*`"))
         }
         ErrorKind::UnexpectedCharacter { character } => {
             let end = rest.find([',', ']', '}', '#']).unwrap_or(rest.len());
             let word = rest.get(..end)?.trim_end();
-            let message = format!("a text cannot begin with `{character}`");
+            let message = format!("a text without quotes cannot begin with `{character}`");
             // For example `risk: >67`.
             let number = word.trim_start_matches(['>', '=', ' ']);
             let specific = match number.parse::<f64>() {
@@ -253,15 +254,15 @@ fn message(text: &str, at: usize, kind: &ErrorKind) -> (String, &'static str) {
         ),
         ErrorKind::MappingValueNotAllowed => (
             "unexpected `: `",
-            "if it belongs to a text, put the text in quotes; if it follows a key, begin the key in the column of the keys above",
+            "if it is part of a text, put the whole text in quotes; if it follows a key, begin the key in the same column as the keys above",
         ),
         ErrorKind::ExpectedBlockSequenceEntry => match content.ends_with(':') {
             true => (
-                "this name has no `-` before it, but the one above has one",
-                "remove the `-` above, and indent the keys under each name: inputs, outputs and blocks have no `-`",
+                "this name has no `-` before it, but the name above does",
+                "remove the `-` before the name above, and indent the keys under each name: inputs, outputs and blocks have no `-`",
             ),
             false => (
-                "this entry has no `-` before it, but the one above has one",
+                "this entry has no `-` before it, but the entry above does",
                 "begin each entry of a list with `-`",
             ),
         },
@@ -295,7 +296,7 @@ fn message(text: &str, at: usize, kind: &ErrorKind) -> (String, &'static str) {
         ),
         ErrorKind::InvalidIndentation => (
             "the line begins in the column of no line above it",
-            "begin the keys of one mapping in the same column",
+            "begin all keys of a mapping in the same column",
         ),
         ErrorKind::CommentNotSeparated => (
             "a space is missing before `#`",

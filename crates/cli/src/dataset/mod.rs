@@ -30,7 +30,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAME|FILE")]
     profile: Option<String>,
 
-    /// Make a row for each period of this length [default: a row for each time in the air]
+    /// Make a row for each period of this length [default: a row for each flight]
     #[arg(long, value_name = "SECONDS", value_parser = numbers::positive, conflicts_with = "horizon")]
     window: Option<f64>,
 

@@ -59,7 +59,7 @@ pub(crate) struct Arguments {
 /// A column that explains the outputs of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum ExplanationColumn {
-    /// The coverage: the largest firing strength of a rule, from 0 to 1
+    /// The coverage: the largest firing strength of any rule, from 0 to 1
     Coverage,
     /// The number of the rule with that strength, from 1
     Rule,

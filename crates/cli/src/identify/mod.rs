@@ -69,7 +69,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     lines: bool,
 
-    /// Minimum relative gain in cross-validation error per step
+    /// Stop when a step lowers the cross-validation error by less than this share
     #[arg(long, default_value_t = 0.02, value_name = "SHARE", value_parser = numbers::share)]
     min_gain: f64,
 

@@ -32,7 +32,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     rows: rows::DerivationArguments,
 
-    /// How to choose the consequent of rows with the same terms
+    /// How to choose the consequent if several rows have the same input terms
     #[arg(long, value_enum, default_value = "strongest", value_name = "HOW")]
     resolve: Resolve,
 

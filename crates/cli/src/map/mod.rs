@@ -58,7 +58,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "INPUT[:LOW..HIGH]", value_parser = axis)]
     y: Option<AxisChoice>,
 
-    /// The output to show [default: the last that no other output reads; for a profile, its risk]
+    /// The output to show [default: the last one that is not an input of another output; for a profile, its risk]
     #[arg(long, value_name = "OUTPUT")]
     of: Option<String>,
 
@@ -70,7 +70,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_enum, value_name = "METHOD")]
     fill: Option<Fill>,
 
-    /// Interpolate cells whose coverage, the largest firing strength of a rule, is below this value from 0 to 1; needs an
+    /// Interpolate cells whose coverage, the largest firing strength of any rule, is below this value from 0 to 1; needs an
     /// interpolation [default: 0.5 if AND is the minimum; otherwise it depends on AND and the terms]
     #[arg(long, value_name = "STRENGTH", value_parser = numbers::degree_above_0)]
     coverage_below: Option<f64>,

@@ -39,7 +39,7 @@ pub(crate) struct Arguments {
     #[arg(value_name = "FILE")]
     file: Option<PathBuf>,
 
-    /// Follow the file read-only
+    /// Show the file and its changes, but never write it
     #[arg(long, requires = "file")]
     read_only: bool,
 

@@ -69,7 +69,7 @@ pub(crate) struct Arguments {
     #[arg(long, default_value = "3", value_name = "DIGITS", value_parser = digits)]
     round: Digits,
 
-    /// Number of starts: the rule set, then random points around it
+    /// Number of starts: the first from the rule set, the others from random points around it
     #[arg(long, default_value_t = 1, value_name = "COUNT", value_parser = whole(1_u32, 1000))]
     starts: u32,
 

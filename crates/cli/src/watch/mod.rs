@@ -60,7 +60,7 @@ const LINES: usize = 50_000;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Address of the vehicle: udpin:0.0.0.0:14550, udpout:HOST:PORT, tcp:HOST:PORT, tcpin:0.0.0.0:PORT or /dev/ttyACM0:57600
+    /// Address of a vehicle: udpin:0.0.0.0:14550, udpout:HOST:PORT, tcp:HOST:PORT, tcpin:0.0.0.0:PORT or /dev/ttyACM0:57600
     #[arg(value_name = "ENDPOINT", required = true)]
     endpoints: Vec<Endpoint>,
 
@@ -99,7 +99,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NUMBER", default_value_t = COMPONENT, value_parser = whole(2, u8::MAX))]
     component: u8,
 
-    /// Record received packets to this telemetry log, a new file
+    /// Record received packets to this telemetry log, which must not exist yet
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
 }

@@ -64,7 +64,7 @@ pub(super) fn read(
     let mut spans = TermSpans::default();
     spans.name = draft.span(name);
     if name.starts_with(is_curly) || name.ends_with(is_curly) {
-        let message = format!("the typographic quotes are read as a part of the name `{name}`");
+        let message = format!("the typographic quotes become part of the name `{name}`");
         let bare = name.trim_matches(is_curly);
         let help = format!("write straight quotes: `'{bare}'`");
         draft.warning("typographic-quotes", name, message, &help);

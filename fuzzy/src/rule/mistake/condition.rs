@@ -86,7 +86,7 @@ pub(super) fn is_missing(
     let found = found_here(rest);
     // For example `IF "temperature IS cold" THEN`, and `IF temperature.cold THEN`.
     if name.starts_with(['"', '\'']) && name.to_ascii_lowercase().contains(" is ") {
-        return Some("remove the quotes: they make one name of the condition".into());
+        return Some("remove the quotes, which turn the condition into a single name".into());
     }
     let parts = name.match_indices(['.', '_']).find_map(|(at, _)| {
         let (of, term) = (name.get(..at)?, name.get(at + 1..)?);
@@ -118,7 +118,7 @@ pub(super) fn is_missing(
         {
             let input = known.inputs.first().map_or("input", |input| input.name);
             return Some(format!(
-                "for a rule that always fires write `{input} IS any`"
+                "for a rule that always fires, write the condition `{input} IS any`"
             ));
         }
         if let Some(variable) = known.variable(name) {
@@ -291,7 +291,7 @@ pub(super) fn phrase_after_name(name: &str, rest: &str, before: &str) -> Option<
     }
     if is(&CHANGES) {
         return Some(format!(
-            "a rule sees the value of `{name}`, not its change: add an input with the rate of change, and use a term of that input"
+            "a rule reads the current value of `{name}`, not how it changes: add an input for its rate of change, and use a term of that input"
         ));
     }
     if found.eq_ignore_ascii_case("IN") {

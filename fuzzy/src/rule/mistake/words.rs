@@ -87,7 +87,7 @@ pub(super) fn name_is_missing(
     };
     if let Some(word) = [last, found].into_iter().find(|word| is_term(word)) {
         return Some(format!(
-            "`{word}` is a word of the rule language: write the term in quotes, `IS \"{word}\"`"
+            "`{word}` is a keyword: to use it as a term, put it in quotes: `IS \"{word}\"`"
         ));
     }
     if found.is_empty() {
@@ -99,7 +99,7 @@ pub(super) fn name_is_missing(
     }
     if what == "an output name" && is("IF") {
         return Some(
-            "a rule has only one `IF`: join the conditions with `AND` before `THEN`".into(),
+            "a rule can have only one `IF`: join the conditions with `AND` before `THEN`".into(),
         );
     }
     if what == "an output name" && found == "(" {
@@ -139,7 +139,7 @@ pub(super) fn name_is_missing(
     }
     Rule::is_keyword(found).then(|| {
         format!(
-            "`{found}` is a word of the rule language: write a name in its place, or put it in quotes if it is a name: `\"{found}\"`"
+            "`{found}` is a keyword: write a name in its place, or put it in quotes if it is a name: `\"{found}\"`"
         )
     })
 }
@@ -280,7 +280,7 @@ pub(super) fn connective(before: &str, rest: &str, known: KnownNames<'_>) -> Opt
     }
     // For example `IF x IS hot T`.
     let is_cut = behind.trim().is_empty() && "THEN".starts_with(&found.to_ascii_uppercase());
-    is_cut.then(|| "the rule seems to be cut off; it ends with `THEN output IS term`".into())
+    is_cut.then(|| "the rule seems to be cut off: complete it with `THEN output IS term`".into())
 }
 
 /// Returns a suggestion for an operator of another language.
@@ -294,7 +294,9 @@ pub(super) fn sign(rest: &str) -> Option<String> {
         "=" | "==" | ":" | ":=" => "IS",
         "!=" | "<>" => "IS NOT",
         "=>" | "->" => "THEN",
-        _ if found.starts_with("//") => return Some("a comment begins with `#`".into()),
+        _ if found.starts_with("//") => {
+            return Some("a comment begins with `#`, not with `//`".into());
+        }
         _ if found.starts_with(is_curly_quote) => {
             return Some("write straight quotes: `\"`".into());
         }
