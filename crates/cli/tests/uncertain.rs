@@ -4,7 +4,7 @@
 
 use std::{
     fs,
-    io::Write,
+    io::{ErrorKind, Write},
     path::{Path, PathBuf},
     process::{Command, Output, Stdio},
     sync::LazyLock,
@@ -42,12 +42,11 @@ fn eval(options: &[&str], points: &str) -> (Output, String) {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    child
-        .stdin
-        .take()
-        .unwrap()
-        .write_all(points.as_bytes())
-        .unwrap();
+    let written = child.stdin.take().unwrap().write_all(points.as_bytes());
+    // The command may end before it reads the table, for example because of a wrong option.
+    if let Err(error) = written {
+        assert_eq!(error.kind(), ErrorKind::BrokenPipe);
+    }
     let output = child.wait_with_output().unwrap();
     let text = String::from_utf8(output.stdout.clone()).unwrap();
     (output, text)

@@ -160,7 +160,7 @@ fn all_problems_of_a_model_are_reported_at_once() {
       help: each input and output must have its own name: rename or remove one of the two
     error[wrong-parameter]: term `low` of input `x`: `sd` is -1, but must be greater than 0
       help: write a number greater than 0
-    error[wrong-range]: the range of input `x` starts at 1 and ends at 1
+    error[wrong-range]: the range of input `x` must end above its start, but is [1, 1]
       help: write a maximum that is above the minimum
     error[value-outside-range]: the value 101 is outside the range of output `y`
       help: write a value from 0 to 100
