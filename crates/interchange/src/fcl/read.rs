@@ -256,7 +256,11 @@ impl<'r, 't> Reader<'r, 't> {
                 (input.low, input.high) = (0.0, 1.0);
             }
         }
-        if !self.is_cut_off {
+        // Without rules, inputs alone are a collection of terms.
+        let model = &self.draft.model;
+        let is_collection =
+            !model.inputs.is_empty() && model.blocks.is_empty() && model.rules.is_empty();
+        if !self.is_cut_off && !is_collection {
             let help =
                 "declare an output in `VAR_OUTPUT`, and write its terms in a `DEFUZZIFY` section";
             self.draft.require_output(help);
