@@ -89,7 +89,7 @@ impl RepositoryCopy {
         }
         let binary = flagred().get_program().to_owned();
         std::os::unix::fs::symlink(&binary, copy.path().join("bin/flagred")).unwrap();
-        // `cargo run --release -- assess LOG` runs the program with these arguments.
+        // `cargo run --profile quick -- assess LOG` runs the program with these arguments.
         let cargo =
             "#!/bin/sh\nwhile [ \"$1\" != -- ]; do shift; done; shift; exec flagred \"$@\"\n";
         fs::write(copy.path().join("bin/cargo"), cargo).unwrap();
