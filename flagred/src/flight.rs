@@ -326,13 +326,12 @@ impl Assessor {
         let (Some(step_s), flight) = (self.step_s, &mut self.flight) else {
             return;
         };
-        for (risk, monitor) in self.monitor.of_each_risk().enumerate() {
-            if flight.peaks.len() == risk {
-                flight.peaks.push(Vec::new());
-            }
-            if let Some(peaks) = flight.peaks.get_mut(risk) {
-                UncertainPeak::keep(peaks, &flight.findings, monitor);
-            }
+        let of_each_risk = self.monitor.of_each_risk();
+        flight
+            .peaks
+            .resize(of_each_risk.clone().count(), Vec::new());
+        for (peaks, monitor) in flight.peaks.iter_mut().zip(of_each_risk) {
+            UncertainPeak::keep(peaks, &flight.findings, monitor);
         }
         if update.t_s < flight.next_step_s {
             return;
@@ -535,15 +534,18 @@ impl Flight {
 
     /// Computes the intervals of the steps' risks and of the findings' highest risks.
     fn bound_risks(&mut self, estimator: &Estimator) {
-        if self.uncertain.iter().any(Option::is_some) {
-            let mut bounds = RiskBounds::new(estimator);
-            for (step, risk) in self.steps.iter_mut().zip(&self.uncertain) {
-                step.risk_interval = risk.as_ref().and_then(|risk| bounds.of(risk));
-            }
-        }
         let of_each_risk = core::iter::once(estimator).chain(estimator.others());
         for (risk, (estimator, peaks)) in of_each_risk.zip(&self.peaks).enumerate() {
+            let has_steps = risk == 0 && self.uncertain.iter().any(Option::is_some);
+            if peaks.is_empty() && !has_steps {
+                continue;
+            }
             let mut bounds = RiskBounds::new(estimator);
+            if has_steps {
+                for (step, risk) in self.steps.iter_mut().zip(&self.uncertain) {
+                    step.risk_interval = risk.as_ref().and_then(|risk| bounds.of(risk));
+                }
+            }
             let output = (risk > 0).then(|| estimator.profile().output.as_str());
             let is_of_risk = |finding: &&mut Finding| {
                 finding.measure == Measure::Risk && finding.risk_output.as_deref() == output

@@ -332,7 +332,7 @@ impl Monitor {
     }
 
     /// The monitors of all risks: this one, then those of the other risks of the profile.
-    pub(crate) fn of_each_risk(&self) -> impl Iterator<Item = &Monitor> {
+    pub(crate) fn of_each_risk(&self) -> impl Iterator<Item = &Monitor> + Clone {
         core::iter::once(self).chain(&self.others)
     }
 

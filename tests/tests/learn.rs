@@ -74,7 +74,7 @@ fn columns_without_a_name_are_ignored() {
     };
     let missing = reported(&["learn", &model, &data]);
     assert!(
-        missing.contains("its columns are `margin` and `spread`"),
+        missing.contains("choose one of `margin` and `spread`"),
         "{missing}"
     );
     for arguments in [

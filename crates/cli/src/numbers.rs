@@ -112,7 +112,7 @@ mod tests {
             ),
             (
                 "1%",
-                "write a number above 0; write `1`, or `0.01` if the input is a fraction from 0 to 1",
+                "write a number above 0; write `1`, or `0.01` on a scale from 0 to 1",
             ),
             (
                 "5min",

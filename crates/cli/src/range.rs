@@ -7,8 +7,8 @@ use fuzzy::tree::number_advice;
 
 #[derive(clap::Args)]
 pub(crate) struct RangeArgument {
-    /// Range of the motor outputs in microseconds, used if the log or the vehicle reports none: `--range 1100 1900`. Without it, such a log
-    /// has no verdict, and `watch` assumes 1000 to 2000
+    /// Range of the motor outputs in microseconds, used if the log or the vehicle reports none: `--range 1100 1900`.
+    /// Without it, such a log has no verdict, and `watch` assumes 1000 to 2000
     #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], value_parser = pulse_width)]
     range: Option<Vec<u16>>,
 }

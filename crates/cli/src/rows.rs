@@ -67,7 +67,7 @@ pub(crate) struct DerivationArguments {
     #[arg(long, conflicts_with = "group_by")]
     pub(crate) no_validation: bool,
 
-    /// Replace inputs outside their range by its nearest end, as `eval` does; `learn` also clamps the output
+    /// Replace inputs outside their range by its nearest end, as `eval` does; `learn` does so with the output too
     #[arg(long)]
     clamp: bool,
 }

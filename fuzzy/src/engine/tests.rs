@@ -160,8 +160,8 @@ fn all_problems_of_a_model_are_reported_at_once() {
       help: each input and output must have its own name: rename or remove one of the two
     error[wrong-parameter]: term `low` of input `x`: `sd` is -1, but must be greater than 0
       help: write a number greater than 0
-    error[wrong-range]: the range of input `x` must end above its start, but is [1, 1]
-      help: write a maximum that is above the minimum
+    error[wrong-range]: the maximum of the range of input `x` must be greater than its minimum, but the range is [1, 1]
+      help: write a greater maximum
     error[value-outside-range]: the value 101 is outside the range of output `y`
       help: write a value from 0 to 100
     error[weight-outside-range]: rule 1: the weight NaN is outside [0, 1]

@@ -128,19 +128,19 @@ pub(super) fn activation(
         let method = node.choice(what, &METHODS, findings);
         if let Some(finding) = findings.get_mut(before) {
             let word = node.as_text().unwrap_or("");
-            finding.help = Some(match keys.contains(&word) {
-                true if word == "threshold" => "write `{threshold: {at_least: 0.3}}`".into(),
-                true => format!("write how many rules may fire: `{{{word}: 1}}`"),
-                false => HELP.into(),
-            });
-            if keys.contains(&word) {
-                let value = if word == "threshold" {
-                    "comparison"
-                } else {
-                    "number of rules"
-                };
-                finding.message = format!("{what} is `{word}`, which needs a {value}");
-            }
+            let needs = |value: &str| format!("{what} is `{word}`, which needs a {value}");
+            let help = match word {
+                "threshold" => {
+                    finding.message = needs("comparison");
+                    "write `{threshold: {at_least: 0.3}}`".into()
+                }
+                _ if keys.contains(&word) => {
+                    finding.message = needs("number of rules");
+                    format!("write how many rules may fire: `{{{word}: 1}}`")
+                }
+                _ => HELP.into(),
+            };
+            finding.help = Some(help);
         }
         return method;
     };

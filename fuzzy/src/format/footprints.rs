@@ -274,7 +274,7 @@ fn share(
         && distance < width
     {
         finding.help = Some(format!(
-            "`blur` is a fraction of the width of the range: for {distance} in a range of width {width}, write `{}`",
+            "`blur` is a fraction of the width of the range: for a blur of {distance} in a range of width {width}, write `{}`",
             rounded(distance / width)
         ));
     }

@@ -31,7 +31,7 @@ pub(super) fn read(
             .is_some_and(|text| text.trim_start().starts_with("- "));
         findings.push(finding.help(match &node.value {
             _ if is_list => {
-                "remove the `|` or `>` after `rules:`, which turns the list into a text"
+                "remove the `|` or `>` after `rules:`, which turns the list into text"
             }
             Value::Scalar(text) if text.text.trim_end().contains('\n') => {
                 "remove the `|` or `>` after `rules:`, and begin the line of each rule with `- IF`"
@@ -237,11 +237,9 @@ fn colon(what: &str, key: &Node, value: &Node) -> Option<Diagnostic> {
         "remove the colon and the text after it, or write that text as a comment: `# {}`",
         value.as_text().unwrap_or("...")
     );
+    let with_colon = || format!("{what} contains a colon, so YAML reads it as a key with a value");
     let (message, help) = if let Some(help) = after_keyword.as_deref().filter(|_| is_rule(key)) {
-        (
-            format!("{what} contains a colon, so YAML reads it as a key with a value"),
-            help,
-        )
+        (with_colon(), help)
     } else if key.as_text().is_some_and(is_of_fis) {
         let help = "write it in words: `IF input IS term THEN output IS term`; a whole FIS file can be imported";
         (
@@ -249,15 +247,9 @@ fn colon(what: &str, key: &Node, value: &Node) -> Option<Diagnostic> {
             help,
         )
     } else if let Some(help) = in_place_of_then(key, value).filter(|_| is_rule(key)) {
-        (
-            format!("{what} contains a colon, so YAML reads it as a key with a value"),
-            help,
-        )
+        (with_colon(), help)
     } else if is_rule(key) {
-        (
-            format!("{what} contains a colon, so YAML reads it as a key with a value"),
-            remark.as_str(),
-        )
+        (with_colon(), remark.as_str())
     } else if is_rule(value) && !matches!(&key.value, Value::Scalar(key) if key.text == "rule") {
         let help = "write `- IF ... THEN ...`, without a name or number";
         (format!("{what} starts with a name, not with `IF`"), help)

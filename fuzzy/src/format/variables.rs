@@ -249,7 +249,7 @@ fn samples(
     };
     *span = number.span.clone();
     let before = findings.len();
-    let samples = number.whole("the number of samples", 0, findings);
+    let samples = number.whole("`samples`", 0, findings);
     if let Some(finding) = findings.get_mut(before) {
         finding.help = Some(help.into());
     }
@@ -447,17 +447,19 @@ fn range(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<(f64
         findings.push(Diagnostic::error("wrong-type", node.span.clone(), message).help(help));
         return None;
     };
-    let end = format!("each end of the range of {what}");
-    let mut read = |node: &Node, extreme: &str| {
+    let mut read = |node: &Node, end: &str, extreme: &str| {
         let before = findings.len();
-        let number = node.finite(&end, findings);
+        let number = node.finite(&format!("the {end} of the range of {what}"), findings);
         let finding = findings.get_mut(before);
         if let Some(finding) = finding.filter(|finding| finding.code == "not-finite") {
             finding.help = Some(format!("write the {extreme} value that you expect"));
         }
         number
     };
-    let (low, high) = (read(low, "smallest"), read(high, "largest"));
+    let (low, high) = (
+        read(low, "minimum", "smallest"),
+        read(high, "maximum", "largest"),
+    );
     Some((low?, high?))
 }
 
@@ -621,8 +623,7 @@ fn partition(
                 return;
             }
             if let Some(help) = without_peaks(&entries).or_else(|| other_terms(&entries)) {
-                let message =
-                    format!("the partition of {what} needs a number for each term, its peak");
+                let message = format!("each term in the partition of {what} needs a peak");
                 let span = node.span.clone();
                 findings.push(Diagnostic::error("wrong-type", span, message).help(help));
                 spans.terms = term_spans(entries.iter().map(|entry| &entry.key_span));

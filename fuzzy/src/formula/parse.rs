@@ -378,7 +378,7 @@ fn quoted(rest: &str, quote: char) -> ParseResult<'_, String> {
 const HEDGES: [&str; 4] = ["very", "somewhat", "extremely", "seldom"];
 
 /// The suggestion for conditional expressions such as `c ? a : b`, which formulas do not support.
-const CONDITIONAL_HELP: &str = "for `a` if a condition is true and `b` otherwise, write `(condition) * a + (1 - (condition)) * b`: a condition is 1 if true, 0 if false";
+const CONDITIONAL_HELP: &str = "to choose between `x` and `y`, write `(condition) * x + (1 - (condition)) * y`, because a condition is 1 if true and 0 if false";
 
 /// Returns a suggestion if a number with `%` is before this position, as in `50% * x`.
 fn percent(text: &str, start: usize) -> Option<String> {

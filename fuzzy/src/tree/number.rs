@@ -48,7 +48,7 @@ pub fn number_advice(text: &str) -> Option<String> {
         let percent = text.trim_end_matches('%').trim();
         return Some(match share {
             0.0 => "write only the number: `0`".into(),
-            _ => format!("write `{percent}`, or `{share}` if the input is a fraction from 0 to 1"),
+            _ => format!("write `{percent}`, or `{share}` on a scale from 0 to 1"),
         });
     }
     if let Some(positive) = text
@@ -167,12 +167,9 @@ mod tests {
             ("\u{2212}12", "this dash is not a minus sign: write `-12`"),
             (
                 "15.48 %",
-                "write `15.48`, or `0.1548` if the input is a fraction from 0 to 1",
+                "write `15.48`, or `0.1548` on a scale from 0 to 1",
             ),
-            (
-                "36 %",
-                "write `36`, or `0.36` if the input is a fraction from 0 to 1",
-            ),
+            ("36 %", "write `36`, or `0.36` on a scale from 0 to 1"),
             ("0%", "write only the number: `0`"),
             ("22V", "write the number without its unit: `22`"),
             (

@@ -239,7 +239,7 @@ impl<'m> Validator<'m> {
             let finding = Diagnostic::error("missing-key", here, message);
             self.findings.push(
                 finding
-                    .related(term.span.clone(), "a rule uses a term of it here")
+                    .related(term.span.clone(), "a rule uses one of its terms here")
                     .help(TERMS_HELP),
             );
             self.unread.push(&variable.name);

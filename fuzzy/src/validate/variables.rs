@@ -74,10 +74,11 @@ impl Validator<'_> {
             let message = format!("the range of {what} is [{low}, {high}], not finite");
             self.error("wrong-range", here, message, "write two finite numbers");
         } else if low >= high {
-            let message =
-                format!("the range of {what} must end above its start, but is [{low}, {high}]");
+            let message = format!(
+                "the maximum of the range of {what} must be greater than its minimum, but the range is [{low}, {high}]"
+            );
             let help = match variable.low == variable.high {
-                true => "write a maximum that is above the minimum",
+                true => "write a greater maximum",
                 false => "write the minimum first, then the maximum",
             };
             self.error("wrong-range", here, message, help);
@@ -165,7 +166,7 @@ impl Validator<'_> {
             if name != variable.name {
                 let here = spans.parameters.get(i).unwrap_or(&spans.name);
                 let message = format!(
-                    "{what}: its formula uses `{name}`, but may use only `{}`",
+                    "the formula of {what} uses `{name}`, but may use only `{}`",
                     variable.name
                 );
                 let own = &variable.name;

@@ -30,12 +30,12 @@ pub(super) fn foreign(text: &str) -> Option<Diagnostic> {
     }
     if let Some((format, section)) = headless(&lines) {
         let message = format!(
-            "this looks like a file in {format} format without its first section, `{section}`"
+            "this looks like a file in {format} format, but its first section, `{section}`, is missing"
         );
         return foreign(
             first,
             message,
-            "copy the whole file again: its first lines are missing",
+            "copy the whole file again",
         );
     }
     if let Some(program) = program(first.1) {

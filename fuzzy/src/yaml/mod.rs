@@ -318,11 +318,8 @@ fn refuse_tag(span: &Span, tagged: bool) -> Result<(), Box<SyntaxError>> {
     }
     let tag = span.tag_span().unwrap_or(*span);
     let bytes = tag.byte_range().unwrap_or(0..0);
-    let finding = Diagnostic::error(
-        "yaml-syntax",
-        bytes,
-        "this is a tag of YAML, which is not supported",
-    );
+    let message = "this is a YAML tag, but tags are not supported";
+    let finding = Diagnostic::error("yaml-syntax", bytes, message);
     Err(finding.help("remove the tag").into())
 }
 

@@ -88,25 +88,17 @@ fn quotes(text: &str, at: usize, kind: &ErrorKind) -> Option<Diagnostic> {
         }
         ErrorKind::InvalidTrailingSingleQuotedScalar => {
             let message = "there is text after the closing single quote";
-            let help =
-                "write `''` for an apostrophe in single quotes, or put the text in double quotes";
-            Some(finding_at(
-                text,
-                at,
-                message,
-                in_rule(text, at).unwrap_or(help),
-            ))
+            let help = in_rule(text, at).unwrap_or(
+                "write `''` for an apostrophe in single quotes, or put the text in double quotes",
+            );
+            Some(finding_at(text, at, message, help))
         }
         ErrorKind::InvalidTrailingDoubleQuotedScalar => {
             let message = "there is text after the closing double quote";
-            let help =
-                "write `\\\"` for a quote in double quotes, or put the text in single quotes";
-            Some(finding_at(
-                text,
-                at,
-                message,
-                in_rule(text, at).unwrap_or(help),
-            ))
+            let help = in_rule(text, at).unwrap_or(
+                "write `\\\"` for a quote in double quotes, or put the text in single quotes",
+            );
+            Some(finding_at(text, at, message, help))
         }
         ErrorKind::UnknownQuotedScalarEscape => {
             let rest = text.get(at..)?;
@@ -225,7 +217,7 @@ fn of_one_word(text: &str, at: usize, kind: &ErrorKind) -> Option<Diagnostic> {
         ErrorKind::UnexpectedCharacter { character } => {
             let end = rest.find([',', ']', '}', '#']).unwrap_or(rest.len());
             let word = rest.get(..end)?.trim_end();
-            let message = format!("a text without quotes cannot begin with `{character}`");
+            let message = format!("text without quotes cannot begin with `{character}`");
             // For example `risk: >67`.
             let number = word.trim_start_matches(['>', '=', ' ']);
             let specific = match number.parse::<f64>() {

@@ -66,8 +66,8 @@ impl Profile {
         self.loaded.profile.text().to_owned()
     }
 
-    /// The warnings about the profile; empty if there are none. Each is printed with the line of the profile that it
-    /// refers to. A profile with warnings can still be used.
+    /// The warnings about the profile as a text that quotes the lines concerned; empty if there are none. A profile with
+    /// warnings can still be used.
     #[wasm_bindgen(getter)]
     pub fn warnings(&self) -> String {
         drawn(

@@ -257,7 +257,11 @@ impl<'a> Line<'a> {
             [option, value] => {
                 let takes = self.arg(option).is_some_and(takes_value);
                 let is_rules = has_ending(Path::new(value), RULES);
-                takes && is_rules != (option == "--profile") && Path::new(value).exists()
+                let is_misplaced = match option.as_str() {
+                    "--profile" => !is_rules,
+                    _ => is_rules,
+                };
+                takes && is_misplaced && Path::new(value).exists()
             }
             _ => false,
         });

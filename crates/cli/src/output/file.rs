@@ -222,8 +222,8 @@ impl Output {
     }
 }
 
-/// Writes several texts: files, then devices, then standard output, which may block. A text that cannot be written does
-/// not prevent the other ones from being written.
+/// Writes several texts: files, then devices, then standard output, which may block. If one text cannot be written, the
+/// other ones are written nevertheless.
 ///
 /// # Errors
 ///

@@ -101,7 +101,7 @@ mod tests {
             ),
             (
                 "15.48 %",
-                "`15.48 %` is not a number: write `15.48`, or `0.1548` if the input is a fraction from 0 to 1",
+                "`15.48 %` is not a number: write `15.48`, or `0.1548` on a scale from 0 to 1",
             ),
             ("2-3", "`2-3` is not a number"),
             (

@@ -82,10 +82,7 @@ impl Header {
             }
             failure.help(match fuzzy::diagnostic::suggest(name, columns) {
                 Some(meant) if meant.ends_with('?') => format!("{meant} If not: {help}"),
-                Some(columns) => {
-                    let columns = columns.replace("choose one of", "its columns are");
-                    format!("{columns}; {help}")
-                }
+                Some(columns) => format!("{columns}; {help}"),
                 None => help.to_owned(),
             })
         })

@@ -77,7 +77,7 @@ const MISTAKES: &[(&str, i32, &str)] = &[
     (
         "tune fan.yaml units.csv -o out.yaml",
         3,
-        "write `5`, or `0.05` if the input is a fraction from 0 to 1",
+        "write `5`, or `0.05` on a scale from 0 to 1",
     ),
     ("learn fan.yaml cells.csv -o out.yaml", 3, "write a point"),
     (
@@ -108,7 +108,7 @@ const MISTAKES: &[(&str, i32, &str)] = &[
     (
         "identify units.csv --target fan -o out.yaml",
         3,
-        "write `5`, or `0.05` if the input is a fraction from 0 to 1",
+        "write `5`, or `0.05` on a scale from 0 to 1",
     ),
     (
         "identify words.csv --target kind -o out.yaml",
@@ -225,7 +225,7 @@ const MISTAKES: &[(&str, i32, &str)] = &[
     (
         "simplify fan.yaml -o out.yaml --tolerance 1%",
         2,
-        "write a number of at least 0; write `1`, or `0.01` if the input is a fraction from 0 to 1",
+        "write a number of at least 0; write `1`, or `0.01` on a scale from 0 to 1",
     ),
 ];
 

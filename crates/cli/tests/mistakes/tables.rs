@@ -17,7 +17,7 @@ const MISTAKES: &[(&str, i32, &str)] = &[
     (
         "explain fan.yaml temperature=22% humidity=3",
         2,
-        "write `22`, or `0.22` if the input is a fraction from 0 to 1",
+        "write `22`, or `0.22` on a scale from 0 to 1",
     ),
     (
         "explain fan.yaml temperature=22",

@@ -161,7 +161,7 @@ fn a_cycle_is_refused_with_its_path() {
     assert_eq!(
         messages(&text),
         [
-            "circular-outputs: circular dependency between outputs: `fan` reads `comfort` in rule 1, \
+            "circular-outputs: circular dependency between outputs: `fan` reads `comfort` in rule 1 and \
           `comfort` reads `fan` in rule 4"
         ]
     );
