@@ -30,9 +30,7 @@ pub(super) fn read(
             .as_text()
             .is_some_and(|text| text.trim_start().starts_with("- "));
         findings.push(finding.help(match &node.value {
-            _ if is_list => {
-                "remove the `|` or `>` after `rules:`, which turns the list into text"
-            }
+            _ if is_list => "remove the `|` or `>` after `rules:`, which turns the list into text",
             Value::Scalar(text) if text.text.trim_end().contains('\n') => {
                 "remove the `|` or `>` after `rules:`, and begin the line of each rule with `- IF`"
             }

@@ -376,7 +376,10 @@ fn cycle_error(steps: &[CycleStep<'_>]) -> Diagnostic {
             format!("remove `{name}` from the term that reads it"),
         ),
         steps => {
-            let message = format!("circular dependency between outputs: {}", path.join(" and "));
+            let message = format!(
+                "circular dependency between outputs: {}",
+                path.join(" and ")
+            );
             let of_rules = steps.iter().filter(|step| step.rule.is_some()).count();
             let help = match of_rules {
                 0 => "to break the cycle, remove one of these outputs from the term that reads it",

@@ -32,11 +32,7 @@ pub(super) fn foreign(text: &str) -> Option<Diagnostic> {
         let message = format!(
             "this looks like a file in {format} format, but its first section, `{section}`, is missing"
         );
-        return foreign(
-            first,
-            message,
-            "copy the whole file again",
-        );
+        return foreign(first, message, "copy the whole file again");
     }
     if let Some(program) = program(first.1) {
         let message = format!("this is {program}, not a rule set in YAML");
