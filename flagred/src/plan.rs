@@ -60,8 +60,9 @@ impl PlanError {
                 "set `when_no_rule_fires` to a number, such as 0, or leave that key out"
             }
             PlanError::Type2 { .. } => {
-                "use `type_reduction: nie_tan` or `begian_melek_mendel` with operators that have a closed form, or \
-                 `weighted_average` of numbers; or remove the keys that make terms type-2, such as `blur` or `lower`"
+                "use `implication: minimum` or `product` and `aggregation: maximum` or `sum` over terms that are not \
+                 functions or singletons, or `weighted_average` of numbers; or remove the keys that make terms type-2, \
+                 such as `blur` or `lower`"
             }
             PlanError::SeveralRisks { .. } => {
                 "write a profile for each risk, and run a monitor for each: the findings are the same"

@@ -8,19 +8,19 @@
 //! output that is an interval has a second output, with the lower bounds. The second outputs follow all other
 //! outputs and have no outcomes.
 //!
-//! The table computes the intervals of weighted outputs and the values of fuzzy sets with a closed form, so that
-//! they can be exported. All other intervals of fuzzy sets are computed here.
+//! The table computes the intervals of weighted outputs and of fuzzy sets with a closed form, so that they can be
+//! exported. The intervals of all other fuzzy sets are computed here.
 
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 
-use super::strategy::method;
+use super::strategy::{method, prepared_set};
 use super::{CompiledOutput, Outcome, RowBuffers, Stage, StageScratch, State};
 use crate::defuzzify::{ConsequentOperators, Method, Reduction, Strengths};
 use crate::model::{
     Defuzzifier, MembershipFunction, Model, Output, Term, TypeReduction, type2::Bound,
 };
 use crate::rule::{Condition, Proposition};
-use crate::table::LOWER_BOUNDS;
+use crate::table::{LOWER_BOUNDS, SetDefuzzifier};
 
 /// The type reductions of a stage that the table does not compute.
 #[derive(Debug, Clone)]
@@ -46,13 +46,19 @@ impl Stage {
             .iter()
             .any(|output| model.has_interval(output))
         {
-            return Stage::plain(model);
+            return Stage::plain(model, &[]);
         }
-        let mut stage = Stage::plain(&with_both_bounds(model));
         let intervals = model.outputs.iter().enumerate();
         let intervals = intervals.filter(|(_, output)| model.has_interval(output));
+        let intervals = intervals.zip(model.outputs.len()..);
+        let reduced = intervals.clone().filter(|((_, output), _)| {
+            !output.type_reduction.is_number() && has_closed_form(model, output)
+        });
+        let reduced = reduced.flat_map(|((upper, _), lower)| [upper, lower]);
+        let reduced: Vec<usize> = reduced.collect();
+        let mut stage = Stage::plain(&with_both_bounds(model), &reduced);
         let mut reductions = Vec::new();
-        for ((output, of_model), lower) in intervals.zip(model.outputs.len()..) {
+        for ((output, of_model), lower) in intervals {
             let operators = model.operators_of_output(of_model);
             let operators = ConsequentOperators {
                 implication: operators.implication,
@@ -92,15 +98,18 @@ impl Stage {
     }
 }
 
-/// Returns whether the table computes the type reduction of a fuzzy set: from the areas and centroids of both sets.
+/// Returns whether the table computes the type reduction of a fuzzy set: a single value from the areas and centroids
+/// of both sets, an interval from prepared sets.
 fn has_closed_form(model: &Model, output: &Output) -> bool {
     let operators = model.operators_of_output(output);
     let is_closed = |bound: Bound| {
-        let method = method(&only(output, bound), operators, |_| None);
-        !matches!(method, Method::Integrated(_))
+        let output = only(output, bound);
+        match output.type_reduction.is_number() {
+            true => !matches!(method(&output, operators, |_| None), Method::Integrated(_)),
+            false => prepared_set(&output, operators, SetDefuzzifier::Centroid).is_some(),
+        }
     };
     output.defuzzifier == Defuzzifier::Centroid
-        && output.type_reduction.is_number()
         && is_closed(Bound::Upper)
         && is_closed(Bound::Lower)
 }

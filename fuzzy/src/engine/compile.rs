@@ -6,7 +6,7 @@ use super::arrays::OwnedTable;
 use super::chain::Chain;
 use super::literal::{Literal, Literals};
 use super::rules::{FiringOperators, IndexedRule};
-use super::strategy::{SingleRowMethod, StrengthCombination, method};
+use super::strategy::{SingleRowMethod, StrengthCombination, method, prepared_set};
 use super::{CompiledOutput, Engine, Input, NamedOutput, Stage};
 use crate::defuzzify::Method;
 use crate::diagnostic::Findings;
@@ -16,7 +16,7 @@ use crate::model::{
     document::{Document, Spans},
 };
 use crate::rule::{Condition, Hedge, Proposition};
-use crate::table::{Action, AntecedentStep, Op};
+use crate::table::{Action, AntecedentStep, Op, SetDefuzzifier};
 use crate::validate::validate;
 
 impl Engine {
@@ -91,9 +91,10 @@ impl Document {
 
 impl Stage {
     /// Compiles a valid model in which no output reads another output. Of type-2 terms, only the upper membership
-    /// functions are compiled.
-    pub(super) fn plain(model: &Model) -> Self {
-        let compiler = Compiler::new(model);
+    /// functions are compiled. `reduced` contains the indices of the outputs of which a type reduction integrates parts.
+    pub(super) fn plain(model: &Model, reduced: &[usize]) -> Self {
+        let mut compiler = Compiler::new(model);
+        compiler.reduced = reduced;
         let firing = FiringOperators::of(model);
         let drafts = compiler.drafts();
         compiler.stage(drafts, &firing)
@@ -120,6 +121,8 @@ pub(super) struct Compiler<'m> {
     inputs: BTreeMap<&'m str, usize>,
     /// The index of each literal. They are numbered by input, term and hedges, independently of the order of the rules.
     pub(super) literals: BTreeMap<LiteralKey, u32>,
+    /// The indices of the outputs whose sets are prepared because a type reduction integrates parts of them.
+    reduced: &'m [usize],
 }
 
 impl<'m> Compiler<'m> {
@@ -129,6 +132,7 @@ impl<'m> Compiler<'m> {
             model,
             inputs: inputs.map(|(input, i)| (input.name.as_str(), i)).collect(),
             literals: BTreeMap::new(),
+            reduced: &[],
         };
         compiler.literals();
         compiler
@@ -338,7 +342,12 @@ impl<'m> Compiler<'m> {
     ) -> CompiledOutput {
         let variable = &output.variable;
         let operators = self.model.operators_of_output(output);
-        let method = method(output, operators, |name| self.inputs.get(name).copied());
+        let set = match self.reduced.contains(&index) {
+            true => prepared_set(output, operators, SetDefuzzifier::Centroid).map(Method::Prepared),
+            false => None,
+        };
+        let input = |name: &str| self.inputs.get(name).copied();
+        let method = set.unwrap_or_else(|| method(output, operators, input));
         let combination = StrengthCombination::of(&method, operators);
         let actions = || drafts.iter().flat_map(|draft| &draft.actions);
         let here = |action: &&Action| action.output as usize == index;

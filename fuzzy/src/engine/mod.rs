@@ -244,8 +244,6 @@ impl Engine {
     /// Returns the compiled arrays, which can be evaluated without this engine or written to a file: see [`table`].
     /// `None` if an output [reads](Model::reads) another one, because a table has only one stage. A table cannot
     /// evaluate outputs whose set is [`ClosedForm::Integrated`](table::ClosedForm::Integrated); only the engine can.
-    /// These include all outputs that [type-2 terms](Model::has_type2_terms) affect and whose terms are fuzzy sets,
-    /// except centroids with a closed form and the type reduction `NieTan` or `BegianMelekMendel`.
     pub fn table(&self) -> Option<Table<'_>> {
         let is_table = self.chain.is_none();
         is_table.then(|| self.first.arrays.table())

@@ -18,6 +18,7 @@
 //! | centroid, product with sum, up to 64 terms, no formula | `Moments` | `defuzzify/prepared.rs` | `table/closed.rs` | 23 |
 //! | centroid, minimum with maximum, straight terms (limits as above) | `Layered` | `defuzzify/layers.rs` | `table/layers.rs` | 60 |
 //! | minimum or product with maximum, or with sum except for maxima, up to 64 terms, no formula | `Prepared` | `defuzzify/prepared.rs` | `table/set.rs` | 73 to 1,200 |
+//! | a type reduction to an interval; operators and terms as above | `Prepared`, two sets | `defuzzify/prepared.rs` | `table/set/between.rs` | 1,700 to 3,000 |
 //! | any other | `Integrated`, in pieces | `defuzzify/curves.rs` | the same | 250 to 3,000 |
 //!
 //! # How firing strengths of rules with the same consequent are combined
@@ -46,7 +47,7 @@
 //! | one row | `Vectors` | `engine/vectors/uniform.rs` | feature `simd`, a uniform table of 3 or 4 inputs and 1 output | 66 (`four_inputs`) |
 //! | one row | `Cells` | `table/firing.rs` | any other uniform table without programs | 73 (2 outputs) |
 //! | one row | `Rules` | `table/firing.rs` | any other rules | 82 (`tipper`) |
-//! | one row | `Bounds` | `engine/bounds.rs` | interval type-2 terms: rules have both bounds, and `defuzzify/reduction.rs` computes the interval | 1,720 |
+//! | one row | `Bounds` | `engine/bounds.rs` | interval type-2 terms: rules have both bounds; the table computes the interval, or `defuzzify/reduction.rs` if there is no closed form | 1,720 |
 //! | many rows | - | `engine/batch.rs` | programs alone, if there are few ([`OwnedTable::programs_alone`]); otherwise the layout above | 13 |
 
 use super::arrays::OwnedTable;
@@ -245,16 +246,9 @@ fn method_of_set(output: &Output, operators: Operators, defuzzifier: SetDefuzzif
     })
 }
 
-fn closed_form(
-    output: &Output,
-    operators: Operators,
-    defuzzifier: SetDefuzzifier,
-) -> Option<Method> {
-    let Variable {
-        low, high, terms, ..
-    } = &output.variable;
-    let range = (*low, *high);
-    let about = (low + 0.5 * (high - low), unit(high - low));
+/// Returns whether the terms are scaled instead of cut, and whether they are summed instead of aggregated by maximum;
+/// `None` for other operators, which have no closed form.
+fn scales_and_sums(operators: Operators) -> Option<(bool, bool)> {
     let scales = match ImplicationEffect::by(operators.implication) {
         ImplicationEffect::Cut => false,
         ImplicationEffect::Scaled => true,
@@ -265,6 +259,32 @@ fn closed_form(
         AggregationEffect::Sum => true,
         AggregationEffect::Otherwise => return None,
     };
+    Some((scales, sums))
+}
+
+/// Prepares the fuzzy set of an output without `samples`; `None` if this is not possible.
+pub(super) fn prepared_set(
+    output: &Output,
+    operators: Operators,
+    defuzzifier: SetDefuzzifier,
+) -> Option<PreparedSet> {
+    let range = (output.variable.low, output.variable.high);
+    let form = scales_and_sums(operators)?;
+    let is_fuzzy = !output.is_discrete();
+    is_fuzzy.then(|| PreparedSet::new(&output.variable.terms, range, form, defuzzifier))?
+}
+
+fn closed_form(
+    output: &Output,
+    operators: Operators,
+    defuzzifier: SetDefuzzifier,
+) -> Option<Method> {
+    let Variable {
+        low, high, terms, ..
+    } = &output.variable;
+    let range = (*low, *high);
+    let about = (low + 0.5 * (high - low), unit(high - low));
+    let (scales, sums) = scales_and_sums(operators)?;
     let is_centroid = match defuzzifier {
         SetDefuzzifier::Centroid => true,
         SetDefuzzifier::Maxima(_) if sums => return None,
@@ -276,7 +296,7 @@ fn closed_form(
     {
         return Some(Method::Partition(partition));
     }
-    let prepared = PreparedSet::new(terms, range, (scales, sums), defuzzifier)?;
+    let prepared = prepared_set(output, operators, defuzzifier)?;
     let are_straight = || terms.iter().all(|term| corners(term).is_some());
     Some(match (is_centroid, scales, sums) {
         (true, true, true) => Method::Moments(prepared.moments(about.1)),

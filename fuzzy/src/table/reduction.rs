@@ -13,8 +13,8 @@
 //! finitely many steps. The right end is found in the same way, with left and right exchanged. If all lower bounds
 //! are 0, the average can be any of the numbers. `defuzzify/reduction.rs` has the same search for fuzzy sets.
 //!
-//! For fuzzy sets with a closed form, only the type reductions that give a single value are supported. They are
-//! computed from the areas and centroids of the lower and the upper set.
+//! For fuzzy sets with a closed form, the type reductions that give a single value are computed from the areas and
+//! centroids of the lower and the upper set. The others need a prepared set, in `set/between.rs`.
 
 use super::closed::area_and_centroid;
 use super::closed_reduction::{Summary, closed};
@@ -122,6 +122,15 @@ pub(super) fn reduced<A: Arrays>(
                 ClosedForm::WeightedSum => sum(points),
                 _ => ends_of(method, points),
             }
+        }
+        ClosedForm::Cut | ClosedForm::Scaled if !method.is_number() => {
+            // Both are prepared sets of the same form, unless the table is damaged.
+            if lower.form() != output.form() {
+                return None;
+            }
+            let with_strengths = |output| Some((output, of(output)?.as_flattened()));
+            let (upper, lower) = (with_strengths(output)?, with_strengths(lower)?);
+            super::set::between::interval(table, method, upper, lower)
         }
         ClosedForm::Integrated => return None,
         _ if !method.is_number() => return None,

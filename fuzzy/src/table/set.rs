@@ -12,6 +12,7 @@ use super::operators::{larger, smaller};
 use super::{Arrays, ClosedForm, Output, ShapeKind};
 pub(crate) use maxima::Maxima;
 
+pub(super) mod between;
 mod bisector;
 mod maxima;
 
