@@ -127,7 +127,7 @@ fn read(tree: &Node, found: &mut Mistakes) -> Option<Profile> {
     );
     let description = fields
         .get("description")
-        .and_then(|node| node.words("the description", "write a text: `description: ...`", found))
+        .and_then(|node| node.words("the description", "write text: `description: ...`", found))
         .map(|words| words.text.clone());
     let output = fields
         .get("output")

@@ -365,7 +365,7 @@ pub(crate) fn write_lists(model: &Model) -> Node {
 /// Returns the text of a key, if there is one.
 fn optional_text(fields: &Fields<'_>, key: &str, findings: &mut Vec<Diagnostic>) -> Option<String> {
     let node = fields.get(key)?;
-    let help = format!("write a text: `{key}: ...`");
+    let help = format!("write text: `{key}: ...`");
     let text = &node.words(&format!("`{key}`"), &help, findings)?.text;
     let inner = text.trim_matches(is_curly_quote);
     if text.starts_with(is_curly_quote) && text.ends_with(is_curly_quote) && !inner.is_empty() {

@@ -33,7 +33,7 @@ fn step(node: &Node, number: usize, findings: &mut Vec<Diagnostic>) -> Option<Pr
     let fields = node.fields(&what, &KEYS, help, findings)?;
     fields.require("command", help, findings);
     let text = |node: &Node, key: &str, findings: &mut Vec<Diagnostic>| {
-        let help = format!("write a text: `{key}: ...`");
+        let help = format!("write text: `{key}: ...`");
         let text = node.words(&format!("`{key}` of {what}"), &help, findings)?;
         Some(text.text.clone())
     };

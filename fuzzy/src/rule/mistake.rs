@@ -212,7 +212,7 @@ impl RuleMistake<'_> {
                 with_help(syntax(format!("expected {what}, found {shown}")), help)
             }
             RuleMistakeKind::HedgeBeforeInput => syntax(format!(
-                "the hedge {shown} must be before the term, not before the input"
+                "the hedge {shown} must come before the term, not before the input"
             ))
             .help(before_input(rest)),
             RuleMistakeKind::HedgeInConsequent => {

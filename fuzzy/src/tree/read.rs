@@ -219,7 +219,7 @@ impl Node {
                         && is_there(key) =>
                     {
                         Some(format!(
-                            "did you mean `{key}`? That key exists too: keep only one of the two"
+                            "did you mean `{key}`? That key exists already: keep only one of the two"
                         ))
                     }
                     _ if meant.is_empty() => {
@@ -451,7 +451,7 @@ impl Node {
             Value::Mapping(_) => "a mapping".into(),
             Value::Scalar(scalar) if scalar.is_null() => "nothing".into(),
             Value::Scalar(scalar) if scalar.text.trim_end().contains('\n') => {
-                "a text of several lines".into()
+                "text of several lines".into()
             }
             Value::Scalar(scalar) => {
                 let cut: String = scalar.text.chars().take(40).collect();

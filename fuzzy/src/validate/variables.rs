@@ -339,7 +339,7 @@ impl Validator<'_> {
         let numbers = format!("`{}`", numbers.join(", "));
         let help = match misfits.len() == variable.terms.len() {
             true => format!(
-                "write `defuzzifier: {defuzzifier}`, or make the terms numbers, such as {numbers}"
+                "write `defuzzifier: {defuzzifier}`, or define the terms as numbers, such as {numbers}"
             ),
             false => format!("make it a number, as the other terms are: {numbers}"),
         };

@@ -217,7 +217,7 @@ fn second_colon(text: &str, start: usize) -> Option<Diagnostic> {
             let value = value.trim().replace('"', "\\\"");
             let general = "put the text in quotes";
             (
-                "a text that contains `: ` must be in quotes",
+                "text that contains `: ` must be in quotes",
                 specific_or(text, format!("write `{key}: \"{value}\"`"), general),
             )
         }
@@ -240,7 +240,7 @@ fn further_right(text: &str, start: usize) -> Option<Diagnostic> {
             ),
         ),
         None if is_more => (
-            "a text that contains `: ` must be in quotes",
+            "text that contains `: ` must be in quotes",
             "put the whole text in quotes: write `\"` at its beginning and at its end".into(),
         ),
         _ => return None,

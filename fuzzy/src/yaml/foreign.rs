@@ -95,9 +95,9 @@ fn program(first: &str) -> Option<&'static str> {
     if begins(&["[system]"]) {
         Some("a FIS file of MATLAB")
     } else if begins(&["function_block"]) {
-        Some("a text in the Fuzzy Control Language (FCL)")
+        Some("a file in the Fuzzy Control Language (FCL)")
     } else if begins(&["engine:"]) {
-        Some("a text in the FuzzyLite Language (FLL)")
+        Some("a file in the FuzzyLite Language (FLL)")
     } else if begins(&["<!doctype html", "<html"]) {
         Some(WEB_PAGE)
     } else if begins(&["fl::", "using namespace fl;"]) {

@@ -211,7 +211,7 @@ fn of_one_word(text: &str, at: usize, kind: &ErrorKind) -> Option<Diagnostic> {
             Some(Diagnostic::error("yaml-syntax", span, "this alias has no anchor").help(help))
         }
         ErrorKind::MissingAnchorOrAliasName if rest.starts_with('*') => {
-            let message = "an entry of a list begins with `-`, not with `*`";
+            let message = "a list entry must begin with `-`, not `*`";
             Some(finding_at(text, at, message, "write `-` in place of `*`"))
         }
         ErrorKind::UnexpectedCharacter { character } => {
@@ -246,7 +246,7 @@ fn message(text: &str, at: usize, kind: &ErrorKind) -> (String, &'static str) {
         ),
         ErrorKind::MappingValueNotAllowed => (
             "unexpected `: `",
-            "if it is part of a text, put the whole text in quotes; if it follows a key, begin the key in the same column as the keys above",
+            "if it is part of text, put the whole text in quotes; if it follows a key, begin the key in the same column as the keys above",
         ),
         ErrorKind::ExpectedBlockSequenceEntry => match content.ends_with(':') {
             true => (

@@ -332,18 +332,23 @@ fn rule_sets_that_keep_previous_values_are_refused_with_help() {
 }
 
 #[test]
-fn an_interval_of_fuzzy_sets_is_refused_with_help() {
+fn an_interval_without_a_closed_form_is_refused_with_help() {
     let sets = std::fs::read_to_string(root().join("tests/type2-onboard/sets.yaml")).unwrap();
-    let text = sets.replacen("type_reduction: nie_tan", "type_reduction: exact", 1);
+    // The lower membership function of a Gaussian with an uncertain mean is a formula.
+    let text = sets.replace(
+        "{triangle: [0, 2, 5], lower_scale: 0.8, lower_lag: 0.3}",
+        "{gaussian: {mean: [1, 2], sd: 1}}",
+    );
+    assert!(text != sets);
     let file = Folder::new();
-    let path = file.file("exact.yaml", text);
+    let path = file.file("formula.yaml", text);
     for option in ["--rust", "--c"] {
         let output = flagred().args(["export", option, &path]).output().unwrap();
         assert_eq!(output.status.code(), Some(3), "{output:?}");
         let reported = String::from_utf8(output.stderr).unwrap();
         assert!(
             reported.contains("the interval of output `speed` is computed from fuzzy sets")
-                && reported.contains("help: use `type_reduction: nie_tan`"),
+                && reported.contains("help: use `implication: minimum`"),
             "{reported}"
         );
     }
