@@ -184,7 +184,7 @@ fn dashes(what: &str, items: &[Node]) -> Option<(Vec<(Node, Node)>, Diagnostic)>
     let (name, _) = entries.first()?;
     let message = format!("the names under {what} must not have a `-` before them");
     let help = format!(
-        "remove the `-` before each name, such as `{}:`, and indent the keys under the name",
+        "write each name without the `-`, for example `{}:`, and indent its keys under it",
         name.as_text().unwrap_or_default()
     );
     let finding = Diagnostic::error("wrong-type", name.span.clone(), message);

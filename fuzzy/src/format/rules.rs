@@ -167,7 +167,7 @@ fn one(
         findings.push(finding.help(format!("write the whole rule as text: `- {rule}`")));
         return None;
     }
-    let help = "add the key `rule`, such as `{rule: IF input IS term THEN output IS term, confidence: 0.8}`";
+    let help = "add the key `rule`, for example `{rule: IF input IS term THEN output IS term, confidence: 0.8}`";
     let text = fields.require("rule", help, findings);
     if let Some(node) = fields.get("confidence") {
         spans.confidence = node.span.clone();

@@ -82,7 +82,7 @@ pub(super) fn read(
             && !start.quoted
         {
             let rest = second.key;
-            let message = "the formula contains a comma, which ends it within braces";
+            let message = "inside `{...}`, a formula with a comma must be in quotes";
             let help = format!(
                 "put the formula in quotes: `function: \"{}, {rest}\"`",
                 start.text

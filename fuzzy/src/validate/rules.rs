@@ -159,7 +159,7 @@ impl<'m> Validator<'m> {
                 );
                 let sets = as_partition(variable).map_or(
                     "give it another defuzzifier and fuzzy sets as terms".to_owned(),
-                    |sets| format!("replace `terms` and `defuzzifier` by `{sets}`"),
+                    |sets| format!("replace `terms` and `defuzzifier` with `{sets}`"),
                 );
                 let mut reported = self.findings.iter_mut();
                 match reported.find(|finding| finding.message == message) {

@@ -48,7 +48,7 @@ pub(super) fn foreign(text: &str) -> Option<Diagnostic> {
         return foreign(
             first,
             message,
-            "name a rule set here; commands that also read a table take the table after the rule set",
+            "pass a rule set as the first file; if the command also reads a table, pass it as the second",
         );
     }
     None

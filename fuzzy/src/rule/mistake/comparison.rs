@@ -52,7 +52,7 @@ pub(super) fn side_of_words<'a>(words: &[&'a str]) -> Option<(Side, &'a str)> {
 /// Returns the suggestion for a number in a condition.
 pub(super) fn not_a_number(input: &str) -> String {
     format!(
-        "a condition names a term, not a number: add a term to `{input}` that covers this value, and write `{input} IS` followed by its name"
+        "a condition names a term, not a number: add a term to `{input}` that covers this value, and write `{input} IS` followed by the name of that term"
     )
 }
 

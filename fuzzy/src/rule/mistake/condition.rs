@@ -211,7 +211,7 @@ pub(super) fn is_missing(
                 false => ("number", format!("a term for {first}")),
             };
             return Some(format!(
-                "a conclusion names a term, not a {given}: add {term} to `{name}`, and write `{name} IS` followed by its name"
+                "a conclusion names a term, not a {given}: add {term} to `{name}`, and write `{name} IS` followed by the name of that term"
             ));
         }
     }
