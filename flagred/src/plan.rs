@@ -29,7 +29,7 @@ pub enum PlanError {
     },
     /// An output whose terms are fuzzy sets is an interval, because the rule set has interval type-2 terms.
     #[error(
-        "the interval of output `{output}` is computed from fuzzy sets, so it cannot be written as a table"
+        "the interval of output `{output}` has no closed form, so it cannot be written as a table"
     )]
     Type2 {
         /// The output.
@@ -60,8 +60,8 @@ impl PlanError {
                 "set `when_no_rule_fires` to a number, such as 0, or leave that key out"
             }
             PlanError::Type2 { .. } => {
-                "use `implication: minimum` or `product` and `aggregation: maximum` or `sum` over terms that are not \
-                 functions or singletons, or `weighted_average` of numbers; or remove the keys that make terms type-2, \
+                "use `implication: minimum` or `product` and `aggregation: maximum` or `sum` over terms that are neither \
+                 functions nor singletons nor Gaussians with an uncertain mean, or `weighted_average` of numbers; or remove the keys that make terms type-2, \
                  such as `blur` or `lower`"
             }
             PlanError::SeveralRisks { .. } => {

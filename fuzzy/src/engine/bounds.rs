@@ -48,26 +48,28 @@ impl Stage {
         {
             return Stage::plain(model, &[]);
         }
-        let intervals = model.outputs.iter().enumerate();
-        let intervals = intervals.filter(|(_, output)| model.has_interval(output));
+        let outputs = model.outputs.iter();
+        let closed: Vec<bool> = outputs
+            .map(|output| model.has_interval(output) && has_closed_form(model, output))
+            .collect();
+        let intervals = model.outputs.iter().zip(&closed).enumerate();
+        let intervals = intervals.filter(|(_, (output, _))| model.has_interval(output));
         let intervals = intervals.zip(model.outputs.len()..);
-        let reduced = intervals.clone().filter(|((_, output), _)| {
-            !output.type_reduction.is_number() && has_closed_form(model, output)
-        });
-        let reduced = reduced.flat_map(|((upper, _), lower)| [upper, lower]);
+        let reduced = intervals
+            .clone()
+            .filter(|((_, (output, closed)), _)| **closed && !output.type_reduction.is_number())
+            .flat_map(|((upper, _), lower)| [upper, lower]);
         let reduced: Vec<usize> = reduced.collect();
-        let mut stage = Stage::plain(&with_both_bounds(model), &reduced);
+        let mut stage = Stage::plain(&with_both_bounds(model, &closed), &reduced);
         let mut reductions = Vec::new();
-        for ((output, of_model), lower) in intervals {
+        for ((output, (of_model, is_closed)), lower) in intervals {
             let operators = model.operators_of_output(of_model);
             let operators = ConsequentOperators {
                 implication: operators.implication,
                 aggregation: operators.aggregation,
             };
             let method = of_model.type_reduction;
-            if !has_closed_form(model, of_model)
-                && let Some(reduction) = Reduction::new(of_model, operators)
-            {
+            if !is_closed && let Some(reduction) = Reduction::new(of_model, operators) {
                 reductions.push(SetReduction {
                     output,
                     lower,
@@ -124,9 +126,9 @@ fn only(output: &Output, bound: Bound) -> Output {
 }
 
 /// Returns a model without type-2 terms. Each output that is an interval has the upper bounds of its firing strengths, and
-/// a second output, at the end, has the lower bounds. Fuzzy sets without a closed form have singletons in place of their
+/// a second output, at the end, has the lower bounds. Fuzzy sets that are not `closed` have singletons in place of their
 /// terms, because only their firing strengths are used.
-fn with_both_bounds(model: &Model) -> Model {
+fn with_both_bounds(model: &Model, closed: &[bool]) -> Model {
     let mut both = model.clone();
     let mut lower_names: Vec<(&str, &str, String)> = Vec::new();
     for (variable, changed) in model.inputs.iter().zip(&mut both.inputs) {
@@ -142,7 +144,7 @@ fn with_both_bounds(model: &Model) -> Model {
     }
     // For each output that is an interval: its name, and the name of its second output.
     let mut lower_outputs: Vec<(&str, String)> = Vec::new();
-    for (index, output) in model.outputs.iter().enumerate() {
+    for (index, (output, is_closed)) in model.outputs.iter().zip(closed).enumerate() {
         if !model.has_interval(output) {
             continue;
         }
@@ -152,7 +154,7 @@ fn with_both_bounds(model: &Model) -> Model {
             continue;
         };
         let mut lower;
-        if has_closed_form(model, output) {
+        if *is_closed {
             *upper = only(output, Bound::Upper);
             lower = only(output, Bound::Lower);
         } else if output.defuzzifier.is_weighted() {

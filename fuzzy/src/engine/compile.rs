@@ -91,7 +91,7 @@ impl Document {
 
 impl Stage {
     /// Compiles a valid model in which no output reads another output. Of type-2 terms, only the upper membership
-    /// functions are compiled. `reduced` contains the indices of the outputs of which a type reduction integrates parts.
+    /// functions are compiled. `reduced` lists the outputs whose sets are prepared for a type reduction.
     pub(super) fn plain(model: &Model, reduced: &[usize]) -> Self {
         let mut compiler = Compiler::new(model);
         compiler.reduced = reduced;

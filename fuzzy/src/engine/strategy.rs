@@ -18,8 +18,10 @@
 //! | centroid, product with sum, up to 64 terms, no formula | `Moments` | `defuzzify/prepared.rs` | `table/closed.rs` | 23 |
 //! | centroid, minimum with maximum, straight terms (limits as above) | `Layered` | `defuzzify/layers.rs` | `table/layers.rs` | 60 |
 //! | minimum or product with maximum, or with sum except for maxima, up to 64 terms, no formula | `Prepared` | `defuzzify/prepared.rs` | `table/set.rs` | 73 to 1,200 |
-//! | a type reduction to an interval; operators and terms as above | `Prepared`, two sets | `defuzzify/prepared.rs` | `table/set/between.rs` | 1,700 to 3,000 |
 //! | any other | `Integrated`, in pieces | `defuzzify/curves.rs` | the same | 250 to 3,000 |
+//!
+//! An output with a type reduction to an interval is `Prepared` if possible, whatever its terms, because
+//! `table/set/between.rs` integrates parts of its two sets.
 //!
 //! # How firing strengths of rules with the same consequent are combined
 //!
@@ -270,8 +272,10 @@ pub(super) fn prepared_set(
 ) -> Option<PreparedSet> {
     let range = (output.variable.low, output.variable.high);
     let form = scales_and_sums(operators)?;
-    let is_fuzzy = !output.is_discrete();
-    is_fuzzy.then(|| PreparedSet::new(&output.variable.terms, range, form, defuzzifier))?
+    if output.is_discrete() {
+        return None;
+    }
+    PreparedSet::new(&output.variable.terms, range, form, defuzzifier)
 }
 
 fn closed_form(

@@ -11,10 +11,10 @@
 //!
 //! F is a convex polygon that never decreases, so Newton's method approaches the root from one side and ends after
 //! finitely many steps. The right end is found in the same way, with left and right exchanged. If all lower bounds
-//! are 0, the average can be any of the numbers. `defuzzify/reduction.rs` has the same search for fuzzy sets.
+//! are 0, the average can be any of the numbers. The search serves fuzzy sets too: `set/between.rs` and, without a closed form, `defuzzify/reduction.rs`.
 //!
 //! For fuzzy sets with a closed form, the type reductions that give a single value are computed from the areas and
-//! centroids of the lower and the upper set. The others need a prepared set, in `set/between.rs`.
+//! centroids of the lower and the upper set. The methods that give an interval need prepared sets.
 
 use super::closed::area_and_centroid;
 use super::closed_reduction::{Summary, closed};

@@ -246,7 +246,7 @@ fn message(text: &str, at: usize, kind: &ErrorKind) -> (String, &'static str) {
         ),
         ErrorKind::MappingValueNotAllowed => (
             "unexpected `: `",
-            "if it is part of text, put the whole text in quotes; if it follows a key, begin the key in the same column as the keys above",
+            "if it is part of a text value, put the whole text in quotes; if it follows a key, begin the key in the same column as the keys above",
         ),
         ErrorKind::ExpectedBlockSequenceEntry => match content.ends_with(':') {
             true => (

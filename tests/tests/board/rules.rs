@@ -347,7 +347,7 @@ fn an_interval_without_a_closed_form_is_refused_with_help() {
         assert_eq!(output.status.code(), Some(3), "{output:?}");
         let reported = String::from_utf8(output.stderr).unwrap();
         assert!(
-            reported.contains("the interval of output `speed` is computed from fuzzy sets")
+            reported.contains("the interval of output `speed` has no closed form")
                 && reported.contains("help: use `implication: minimum`"),
             "{reported}"
         );

@@ -7,7 +7,7 @@ use crate::table::reduction::{IntervalEnd, search};
 use crate::table::{Arrays, Flank, Output, ShapeKind, TypeReduction, centroid};
 
 /// Returns the ends of the interval that a type reduction gives for the sets of `upper` and `lower`; `None` if the
-/// upper set is empty or an output has no prepared set.
+/// upper set is empty.
 pub(in crate::table) fn interval<A: Arrays>(
     table: &A,
     method: TypeReduction,
@@ -127,7 +127,7 @@ impl SetArrays<'_> {
         (curve.0 + level.0, curve.1 + level.1)
     }
 
-    /// Returns the area and moment below a flank between two of its values.
+    /// Returns the area and moment below a flank between two values.
     fn curve(&self, flank: &Flank, (from, to): (f64, f64)) -> (f64, f64) {
         if from >= to {
             return (0.0, 0.0);
