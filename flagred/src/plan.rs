@@ -27,7 +27,7 @@ pub enum PlanError {
         /// The output.
         output: String,
     },
-    /// An output whose terms are fuzzy sets is an interval, because the rule set has interval type-2 terms.
+    /// The output is an interval, and its interval has no closed form.
     #[error(
         "the interval of output `{output}` has no closed form, so it cannot be written as a table"
     )]

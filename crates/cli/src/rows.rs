@@ -67,7 +67,7 @@ pub(crate) struct DerivationArguments {
     #[arg(long, conflicts_with = "group_by")]
     pub(crate) no_validation: bool,
 
-    /// Replace inputs outside their range by its nearest end, as `eval` does; `learn` does so with the output too
+    /// Replace inputs outside their range by its nearest end, as `eval` does; `learn` also does this for the output
     #[arg(long)]
     clamp: bool,
 }

@@ -26,7 +26,7 @@ use super::{ConsequentOperators, Strengths};
 use crate::model::{Defuzzifier, Output, Term, TypeReduction, type2::Bound};
 use crate::table::closed_reduction::{Summary, closed};
 use crate::table::operators::smaller;
-use crate::table::reduction::{IntervalEnd, WeightedNumber, ends_of, search};
+use crate::table::reduction::{WeightedNumber, both_ends, ends_of};
 
 /// The type reduction of an output that is not weighted.
 #[derive(Debug, Clone)]
@@ -216,14 +216,9 @@ impl Set {
     ) -> (f64, f64) {
         let range = (self.low, self.high);
         let unit = unit(self.high - self.low);
-        let mut sums = |end: IntervalEnd, x: f64| {
+        both_ends(summary.upper.1, range, |end, x| {
             let mut sums = Integrals::about(x, unit);
-            let below = (f64::NEG_INFINITY, x);
-            let above = (x, f64::INFINITY);
-            let (of_upper, of_lower) = match end {
-                IntervalEnd::Left => (below, above),
-                IntervalEnd::Right => (above, below),
-            };
+            let (of_upper, of_lower) = end.parts(x);
             if let Some((upper, lower)) = kept {
                 for (lines, part) in [(upper, of_upper), (lower, of_lower)] {
                     for [from, to, left, right] in lines {
@@ -248,15 +243,7 @@ impl Set {
                     sums.add_between(piece, of_lower);
                 });
             (sums.area, sums.moment)
-        };
-        let start = summary.upper.1;
-        let left = search(IntervalEnd::Left, start, range, |x| {
-            sums(IntervalEnd::Left, x)
-        });
-        let right = search(IntervalEnd::Right, start, range, |x| {
-            sums(IntervalEnd::Right, x)
-        });
-        (left, right)
+        })
     }
 }
 

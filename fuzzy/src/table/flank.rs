@@ -74,6 +74,15 @@ impl Measure {
         let area = degree * ((to - from) / self.unit);
         (area, area * (from + 0.5 * (to - from) - self.origin))
     }
+
+    /// Returns the area and moment below a straight line between two points, in any order.
+    pub(crate) fn trapezoid(self, (from, left): (f64, f64), (to, right): (f64, f64)) -> (f64, f64) {
+        let signed = to - from;
+        let units = libm::fabs(signed) / self.unit;
+        let area = units * 0.5 * (left + right);
+        let moment = units * signed * (left + 2.0 * right) / 6.0;
+        (area, (from - self.origin) * area + moment)
+    }
 }
 
 impl Flank {
@@ -161,15 +170,22 @@ impl Flank {
         larger(self.from, smaller(x, self.to))
     }
 
+    /// Returns the value at which the flank is cut off at a firing strength: the summit if it is nowhere higher, the
+    /// foot if it is everywhere higher.
+    pub(crate) fn clip(&self, strength: f64) -> f64 {
+        let ((foot, low), (summit, high)) = (self.foot(), self.summit());
+        match (high <= strength, low < strength) {
+            (true, _) => summit,
+            (false, true) => self.position_of_degree(strength),
+            (false, false) => foot,
+        }
+    }
+
     /// Returns the area and moment of the tail up to `x`; `degree` is the degree of the flank at `x`.
     pub(crate) fn tail(&self, knots: &[Knot], measure: Measure, x: f64, degree: f64) -> (f64, f64) {
         let (foot, low) = self.foot();
         if self.kind == ShapeKind::PIECEWISE {
-            let signed = x - foot;
-            let units = libm::fabs(signed) / measure.unit;
-            let area = units * 0.5 * (low + degree);
-            let moment = units * signed * (low + 2.0 * degree) / 6.0;
-            return (area, (foot - measure.origin) * area + moment);
+            return measure.trapezoid((foot, low), (x, degree));
         }
         if self.first_knot == self.end_knot {
             let area = self.beyond_of(x, measure) - self.beyond;
@@ -209,13 +225,8 @@ impl Flank {
         if high <= strength {
             return (self.area, self.moment);
         }
-        let (foot, low) = self.foot();
-        let x = if low < strength {
-            self.position_of_degree(strength)
-        } else {
-            foot
-        };
-        let (area, moment) = if x == foot {
+        let x = self.clip(strength);
+        let (area, moment) = if x == self.foot().0 {
             (0.0, 0.0)
         } else {
             self.tail(knots, measure, x, strength)

@@ -67,6 +67,18 @@ pub(crate) enum IntervalEnd {
     Right,
 }
 
+impl IntervalEnd {
+    /// Returns where the set of the search equals the upper set, and where it equals the lower set: one on each side
+    /// of `x`.
+    pub(crate) fn parts(self, x: f64) -> ((f64, f64), (f64, f64)) {
+        let (below, above) = ((f64::NEG_INFINITY, x), (x, f64::INFINITY));
+        match self {
+            IntervalEnd::Left => (below, above),
+            IntervalEnd::Right => (above, below),
+        }
+    }
+}
+
 impl TypeReduction {
     /// Returns the code in exported data; 0 is the code of outputs without a type reduction.
     #[cfg(feature = "alloc")]
@@ -205,14 +217,7 @@ pub(crate) fn average(points: impl Iterator<Item = WeightedNumber> + Clone) -> O
         }
         (total, moment)
     };
-    let (range, start) = ((low, high), low + 0.5 * (high - low));
-    let left = search(IntervalEnd::Left, start, range, |x| {
-        sums(IntervalEnd::Left, x)
-    });
-    let right = search(IntervalEnd::Right, start, range, |x| {
-        sums(IntervalEnd::Right, x)
-    });
-    Some((left, right))
+    Some(both_ends(low + 0.5 * (high - low), (low, high), sums))
 }
 
 /// Returns the interval of `sum(w x)` over all weights between their bounds; `None` if there are no points.
@@ -225,6 +230,16 @@ pub(crate) fn sum(points: impl Iterator<Item = WeightedNumber>) -> Option<(f64, 
         high += larger(one, other);
     }
     (!is_empty).then_some((low, high))
+}
+
+/// Searches for both ends of the interval; `sums` is that of [`search`] for the given end.
+pub(crate) fn both_ends(
+    start: f64,
+    range: (f64, f64),
+    mut sums: impl FnMut(IntervalEnd, f64) -> (f64, f64),
+) -> (f64, f64) {
+    let mut end = |end| search(end, start, range, |x| sums(end, x));
+    (end(IntervalEnd::Left), end(IntervalEnd::Right))
 }
 
 /// Returns an end of the interval by Newton's method. `sums` returns the area and the moment about x of a set that

@@ -66,7 +66,7 @@ impl Profile {
         self.loaded.profile.text().to_owned()
     }
 
-    /// The warnings about the profile as a text that quotes the lines concerned; empty if there are none. A profile with
+    /// The warnings about the profile, with the lines that they refer to; empty if there are none. A profile with
     /// warnings can still be used.
     #[wasm_bindgen(getter)]
     pub fn warnings(&self) -> String {

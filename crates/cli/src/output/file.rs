@@ -223,7 +223,7 @@ impl Output {
 }
 
 /// Writes several texts: files, then devices, then standard output, which may block. If one text cannot be written, the
-/// other ones are written nevertheless.
+/// others are still written.
 ///
 /// # Errors
 ///

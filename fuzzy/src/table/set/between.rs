@@ -3,7 +3,7 @@
 use super::{SetArrays, SetSegment};
 use crate::table::closed_reduction::{Summary, closed};
 use crate::table::operators::{larger, smaller};
-use crate::table::reduction::{IntervalEnd, search};
+use crate::table::reduction::both_ends;
 use crate::table::{Arrays, Flank, Output, ShapeKind, TypeReduction, centroid};
 
 /// Returns the ends of the interval that a type reduction gives for the sets of `upper` and `lower`; `None` if the
@@ -31,18 +31,12 @@ pub(in crate::table) fn interval<A: Arrays>(
     if summary.lower.is_none() {
         return Some(summary.support);
     }
-    let sums = |end: IntervalEnd, x: f64| {
-        let (below, above) = ((f64::NEG_INFINITY, x), (x, f64::INFINITY));
-        let (of_upper, of_lower) = match end {
-            IntervalEnd::Left => (below, above),
-            IntervalEnd::Right => (above, below),
-        };
+    Some(both_ends(summary.upper.1, range, |end, x| {
+        let (of_upper, of_lower) = end.parts(x);
         let (a, m) = upper.between(upper_strengths, of_upper);
         let (b, n) = lower.between(lower_strengths, of_lower);
         (a + b, m + n - (a + b) * (x - upper.measure.origin))
-    };
-    let end = |end| search(end, summary.upper.1, range, |x| sums(end, x));
-    Some((end(IntervalEnd::Left), end(IntervalEnd::Right)))
+    }))
 }
 
 impl SetArrays<'_> {
@@ -107,13 +101,8 @@ impl SetArrays<'_> {
             let (area, moment) = self.curve(flank, common);
             return (strength * area, strength * moment);
         }
-        let ((foot, low), (summit, high)) = (flank.foot(), flank.summit());
-        let clip = match (high <= strength, low < strength) {
-            (true, _) => summit,
-            (false, true) => flank.position_of_degree(strength),
-            (false, false) => foot,
-        };
-        let (slope, plateau) = match foot <= summit {
+        let clip = flank.clip(strength);
+        let (slope, plateau) = match flank.foot().0 <= flank.summit().0 {
             true => (
                 (common.0, smaller(clip, common.1)),
                 (larger(clip, common.0), common.1),
@@ -134,10 +123,7 @@ impl SetArrays<'_> {
         }
         let (left, right) = (flank.degree(from), flank.degree(to));
         if flank.kind == ShapeKind::PIECEWISE {
-            let units = (to - from) / self.measure.unit;
-            let area = units * 0.5 * (left + right);
-            let moment = units * (to - from) * (left + 2.0 * right) / 6.0;
-            return (area, (from - self.measure.origin) * area + moment);
+            return self.measure.trapezoid((from, left), (to, right));
         }
         let tail = |x, degree| flank.tail(self.knots, self.measure, x, degree);
         let ((a, m), (b, n)) = (tail(from, left), tail(to, right));
