@@ -121,15 +121,17 @@ test('a log of 100 MB', { timeout: 600_000 }, async (context) => {
   const all = [];
   const best = (name) => Math.min(...all.map((measured) => measured[name]));
   const isGood = () => best('assessed_s') < MAX_S && best('longest_ms') < MAX_TASK_MS;
-  while (all.length < TRIES && !(all.length > 0 && isGood())) {
+  while (all.length === 0 || (isTimed && all.length < TRIES && !isGood())) {
     all.push(await measure(path));
     context.diagnostic(JSON.stringify(all.at(-1)));
   }
   for (const { badge, processor_ms, memory_kb } of all) {
     assert.equal(badge, 'GOOD');
-    assert.ok(processor_ms > 0 && processor_ms < MAX_TASK_MS, `a task took ${processor_ms} ms of a processor`);
+    assert.ok(processor_ms > 0);
     assert.ok(memory_kb < MAX_MEMORY_KB, `${memory_kb} kB`);
   }
+  if (!isTimed) return;
   assert.ok(best('assessed_s') < MAX_S, `${best('assessed_s')} s`);
-  assert.ok(!isTimed || best('longest_ms') < MAX_TASK_MS, `the longest task took ${best('longest_ms')} ms`);
+  assert.ok(best('longest_ms') < MAX_TASK_MS, `the longest task took ${best('longest_ms')} ms`);
+  assert.ok(best('processor_ms') < MAX_TASK_MS, `a task took ${best('processor_ms')} ms of a processor`);
 });

@@ -9,7 +9,7 @@ import { repository } from './installed.mjs';
 import { RuleSet, RuleText, startRules } from '../../../target/web/package/rules.js';
 import { Flight, startFlight } from '../../../target/web/package/flight.js';
 
-/** The maximum processor time for one value, in microseconds. */
+/** The maximum processor time for one value, in microseconds: asserted with FLAGRED_TIMED. */
 const MAX_US = 0.5;
 
 let text, rules;
@@ -127,20 +127,20 @@ test('a value is right after the memory of the module has moved', () => {
   for (const other of others) other.free();
 });
 
-test('a value is fast', (told) => {
-  const calls = 200_000;
+test('a value is at least three times faster than all results of the same point', (told) => {
+  const calls = 50_000;
   const point = [8, 9];
-  const times = Array.from({ length: 7 }, (_, round) => {
+  const time_us = (call) => {
     const start = process.cpuUsage();
-    let sum = 0;
     for (let i = 0; i < calls; i++) {
       point[0] = (i % 100) / 10;
-      sum += rules.value(point);
+      call();
     }
-    assert.ok(sum > 0, `round ${round}`);
     return process.cpuUsage(start).user / calls;
-  });
-  const best = Math.min(...times);
-  told.diagnostic(`${best.toFixed(3)} us of a processor for a value, the best of ${times.length} times ${calls}`);
-  assert.ok(best < MAX_US, `${best} us`);
+  };
+  const times = Array.from({ length: 5 }, () => [time_us(() => rules.value(point)), time_us(() => rules.evaluate(point))]);
+  const [value_us, results_us] = [0, 1].map((which) => Math.min(...times.map((pair) => pair[which])));
+  told.diagnostic(`${value_us.toFixed(3)} us of a processor for a value, ${results_us.toFixed(3)} us for all results`);
+  assert.ok(results_us > 3 * value_us, `${results_us / value_us} times faster`);
+  assert.ok(!process.env.FLAGRED_TIMED || value_us < MAX_US, `${value_us} us`);
 });
