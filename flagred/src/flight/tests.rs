@@ -1,5 +1,8 @@
 use super::*;
-use crate::{shipped, verdict::Measure};
+use crate::{
+    shipped,
+    verdict::{Level, Measure},
+};
 
 mod loss;
 mod state;

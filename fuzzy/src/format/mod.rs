@@ -17,7 +17,9 @@ mod blocks;
 mod footprints;
 mod lists;
 mod notation;
+mod partition;
 mod provenance;
+mod range;
 mod rules;
 #[cfg(feature = "serde")]
 mod schema;
