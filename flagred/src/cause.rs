@@ -16,7 +16,7 @@ pub struct Proposition {
 
 /// The cause of the risk when a level was reached: a rule and one of its propositions, as indices. The rule is the
 /// one that raises the risk most ([`Table::raised_by`](fuzzy::table::Table::raised_by)) among all rules that fired.
-/// The proposition is the one that the fewest rules share among the true propositions in the antecedent of that rule.
+/// Among the true propositions in the antecedent of that rule, the proposition is the one that the fewest rules share.
 /// If this proposition is about an output, the search continues with the rule that contributes most to the term of
 /// this output, and so on until a proposition is about an input.
 #[derive(Debug, Clone, Copy, PartialEq)]

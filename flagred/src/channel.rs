@@ -55,11 +55,11 @@ pub enum Statistic {
     /// movement it is 0. docs/profiles.md defines the bins. The first bin has no bin before it, and counts as a step of
     /// 0.
     Noise,
-    /// The rate of change per second: the slope of the least-squares line through the means of the window's slots, weighted
-    /// by their times.
+    /// The rate of change per second: the slope of the least-squares line through the means of the window's slots. Each
+    /// slot is weighted by the time that its samples cover.
     Rate,
-    /// A percentile of the means of the window's slots, weighted by their times; 50 is the median. docs/profiles.md
-    /// defines it.
+    /// A percentile of the means of the window's slots, each weighted by the time that its samples cover; 50 is the
+    /// median. docs/profiles.md defines it.
     Percentile(f64),
 }
 

@@ -247,7 +247,7 @@ fn compile(
     None
 }
 
-/// Returns the errors about names of inputs that remain if the first error is about another name.
+/// If the first error is about a name, returns all errors about names of inputs except that one; otherwise none.
 fn other_names(profile: &Profile, engine: &Engine, first: &EstimatorError) -> Vec<EstimatorError> {
     let is_about_names = matches!(
         first,

@@ -10,9 +10,9 @@ pub struct Craft<'a> {
     pub motors: usize,
     /// The names of the signals of a sample other than motor commands, in order.
     pub signals: &'a [&'a str],
-    /// The subset of `signals` that the vehicle might never send. Until such a signal is known for
-    /// the first time, an input takes the value of
-    /// [`if_missing`](crate::profile::ProfileInput::if_missing), if it has one.
+    /// The subset of `signals` that the vehicle might never send. Until such a signal is known for the first time, the
+    /// inputs that read it have the value of their
+    /// [`if_missing`](crate::profile::ProfileInput::if_missing), or are unknown without it.
     pub optional: &'a [&'a str],
     /// The factors of each motor, in the order of the samples; empty if the geometry is unknown.
     pub geometry: &'a [Factors],

@@ -1,4 +1,4 @@
-//! Exponential windows: all past values count, with weights that decay with their age, stored in a few numbers.
+//! Exponential windows: all past values count, with weights that decay with their age. A window stores only a few numbers.
 
 use crate::moments::Moments;
 
@@ -67,8 +67,8 @@ impl Exponential {
         libm::round(self.samples) as u32
     }
 
-    /// The duration, in seconds, of samples without a gap until now that would have the same weight. This is the
-    /// inverse of `constant (1 - exp(-seconds / constant))`.
+    /// The covered time in seconds: samples without a gap over this time, up to now, would have the same total weight.
+    /// This is the inverse of `constant (1 - exp(-seconds / constant))`.
     pub(crate) fn covered_s(&self) -> f64 {
         let share = (self.moments.weight() / self.constant_s).min(1.0);
         -self.constant_s * libm::log1p(-share)

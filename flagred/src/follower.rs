@@ -37,7 +37,7 @@ pub(crate) struct Follower {
     /// The time since which the vehicle seems to be on the ground, in seconds; the flight may continue within
     /// [`TOUCH_S`].
     down_since_s: Option<f64>,
-    /// What idling motors mean: a landing, or trouble in flight; `None` while the motors do not idle.
+    /// The interpretation of idling motors: a landing, or trouble in flight; `None` while the motors do not idle.
     idle: Option<Idle>,
     /// The last time in seconds at which the motors did not idle; `None` if there is no such time since the autopilot
     /// last reported that the vehicle is on the ground.
@@ -46,8 +46,8 @@ pub(crate) struct Follower {
     falls: bool,
     last_high_s: Option<f64>,
     last_known_s: Option<f64>,
-    /// During and after an alarm, the last time at which it was not certain that the motors work as they did
-    /// before the alarm, in seconds.
+    /// During and after an alarm, the last time in seconds at which the motors were not known to work as they did
+    /// before the alarm.
     unrecovered_s: Option<f64>,
 }
 

@@ -22,7 +22,7 @@
 //! let mut alarms = Vec::new();
 //! for i in 0..500 {
 //!     let t_s = f64::from(i) * 0.04;
-//!     // Commands as parts of the effective range: 0 and 1 are the limits. Here the motors reach their limits after 10 s.
+//!     // Commands are fractions of the effective range: 0 and 1 are the limits. Here the motors reach them after 10 s.
 //!     let motors = if t_s < 10.0 { [0.4, 0.4, 0.41, 0.41] } else { [0.0, 1.0, 0.05, 1.0] };
 //!     let update = monitor.push(&Sample { t_s, motors: &motors, in_air: Some(true), signals: &[] });
 //!     alarms.extend(update.change); // GOOD, WARN or FAIL, when the level changes

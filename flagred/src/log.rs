@@ -267,8 +267,8 @@ fn step_s_of(flight: &Flight, signals: &[&str]) -> Option<f64> {
     steps.get(steps.len() / 2).copied()
 }
 
-/// Whether the autopilot reports at `t_s` that the vehicle is in the air; `None` if the time in the air is only derived
-/// or assumed.
+/// Whether the vehicle is in the air at `t_s`. If this is only derived or assumed, and not reported by the autopilot,
+/// the result is `None` instead of `Some(true)`.
 pub fn in_air(flight: &Flight, t_s: f64) -> Option<bool> {
     let is_assumed = flight.in_air.as_ref().is_some_and(|air| air.is_assumed);
     match flight.is_in_air(t_s) == Some(true) {

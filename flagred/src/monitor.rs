@@ -341,8 +341,8 @@ impl Monitor {
         self.risk
     }
 
-    /// The beginning in seconds and the highest value in % of the open finding of the risk of this monitor, or of the
-    /// finding that will be opened if a threshold stays reached.
+    /// The beginning (in seconds) and the highest value (in %) of the open finding about the risk of this monitor, or of
+    /// the finding that will be opened if a threshold stays reached.
     pub(crate) fn peak_of_risk(&self) -> Option<(f64, f64)> {
         self.follower.peak_of_risk()
     }
@@ -451,13 +451,14 @@ impl Monitor {
             .try_for_each(|other| other.load(from))
     }
 
-    /// The mean margin over all motors and the profile's window, with any rule set: the paper's first input.
+    /// The mean margin over all motors and the profile's window, also if the rule set does not read it: the paper's first
+    /// input. `None` if it is unknown, or if the craft has no motors.
     pub fn margin(&self) -> Option<f64> {
         self.reading(self.room.inputs.len())
     }
 
-    /// The standard deviation of the effective commands over all motors and the profile's window, with any rule set:
-    /// the paper's second input.
+    /// The standard deviation of the effective commands over all motors and the profile's window, also if the rule set
+    /// does not read it: the paper's second input. `None` as for [`Monitor::margin`].
     pub fn spread(&self) -> Option<f64> {
         self.reading(self.room.inputs.len() + 1)
     }

@@ -48,7 +48,7 @@ pub struct Motor {
     pub(crate) trim: Average,
     /// The time for which the command has been 0, in seconds.
     pub(crate) at_zero_s: f64,
-    /// The margins of the motor while a level is reached. They are recorded anew when WARN or FAIL is first reached.
+    /// The margins of the motor while a threshold is reached. The record restarts when WARN or FAIL begins to be reached.
     pub(crate) record: MotorRecord,
 }
 

@@ -1,4 +1,4 @@
-//! Exports rule sets whose values have closed forms as plain data for monitors on board.
+//! Exports rule sets as plain data for monitors on board. The outputs must have closed forms.
 
 use alloc::string::String;
 use core::ops::Range;
@@ -149,8 +149,8 @@ mod tests {
         );
     }
 
-    /// The rules of the paper conclude the output `strain`. The output `risk` copies the value of `strain` by means
-    /// of one rule for each term.
+    /// The rules of the paper compute the output `strain` here. The output `risk` copies the value of `strain`, with one
+    /// rule for each term.
     #[test]
     fn a_chain_has_a_plan_unless_it_reads_an_output_without_a_closed_form() {
         let profile = shipped::flagred_paper().profile().clone();

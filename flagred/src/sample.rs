@@ -121,14 +121,14 @@ pub enum Unknown {
 pub struct Sampling {
     /// The minimum number of samples that a window must contain before it counts.
     pub min_samples: u32,
-    /// The time that a window must cover before it counts, in seconds, or its whole length if that is less; 99 % of it
-    /// is enough.
+    /// The time in seconds that a window must cover before it counts; for a shorter window, its whole length. 99 % of
+    /// this time is enough.
     pub warm_up_s: f64,
     /// A gap between two samples that is longer than this, in seconds, resets the state.
     pub longest_gap_s: f64,
-    /// The length of the take-off, in seconds. When `warm_up_s` have passed after the take-off, it is discarded from
-    /// longer windows and the elevated risk restarts, because the take-off is not typical of the flight. If this is 0,
-    /// nothing is discarded.
+    /// The length of the take-off, in seconds. When `warm_up_s` have passed after the take-off, windows that are longer
+    /// than the take-off discard it and the elevated risk restarts, because a take-off is not typical of the flight. If
+    /// the length is 0, nothing is discarded.
     pub take_off_s: f64,
 }
 

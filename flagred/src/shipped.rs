@@ -109,7 +109,7 @@ pub fn profile_names() -> Vec<&'static str> {
     PROFILES.iter().map(|shipped| shipped.name).collect()
 }
 
-/// The names of the shipped profiles whose risk comes from the motors only, which can be compared on any log.
+/// The names of the shipped profiles whose risk depends only on the motors, so that they can be compared on any log.
 pub fn motor_profile_names() -> impl Iterator<Item = &'static str> {
     let reads_motors_alone =
         |shipped: &&Shipped| valid(shipped.text.parse::<Profile>()).signals().is_empty();

@@ -63,7 +63,7 @@ pub enum Measure {
     CommandNoise,
     /// The reserve: the distance of the mean command from the upper limit, in % of the range.
     Reserve,
-    /// The shift of a motor's command, relative to the mean command of all motors, since earlier in the flight, in % of
+    /// The change of a motor's command since earlier in the flight, relative to the mean command of all motors, in % of
     /// the range.
     Imbalance,
     /// The difference between the command of a motor and that of the opposite motor, in % of the range.

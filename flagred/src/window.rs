@@ -13,7 +13,7 @@ mod slots;
 /// The number of slots that the samples of a window are divided into. See [`Window`].
 const SLOTS: usize = 128;
 
-/// A sample counts as outside the window if at most this time of it, in seconds, is inside: timestamps have a
+/// A sample counts as outside the window if its part inside is at most this long, in seconds: timestamps have a
 /// resolution of one microsecond.
 const TIME_RESOLUTION_S: f64 = 1e-6;
 
@@ -53,7 +53,7 @@ pub struct Window {
     oldest: usize,
     len: usize,
     samples: u32,
-    /// The number of the oldest slots whose `and_later` is set.
+    /// The number of slots in the front: the oldest slots, of which `and_later` is set.
     front: usize,
     /// The total of all slots after the front.
     back: Moments,

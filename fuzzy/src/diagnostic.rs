@@ -398,7 +398,7 @@ pub(crate) fn duplicate(
         ),
         "finding" => (
             "duplicate-key",
-            "keep one of the entries; if the reasons differ, write both in it",
+            "keep one of the entries; if their reasons differ, write both in its `because`",
         ),
         "block" => (
             "duplicate-block",

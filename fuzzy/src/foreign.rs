@@ -145,8 +145,8 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ),
     (
         "type",
-        "remove it: the defuzzifier `weighted_average` or `weighted_sum` makes an output a Takagi-Sugeno output, any other a \
-         Mamdani output",
+        "remove it: the defuzzifier of an output determines its type: Takagi-Sugeno for `weighted_average` and `weighted_sum`, \
+         Tsukamoto for `tsukamoto`, otherwise Mamdani",
     ),
     (
         "defuzzmethod",

@@ -454,7 +454,7 @@ fn directions_are_confirmed_or_refuted_at_a_position() {
         if code == 1 {
             assert!(said.contains("monotone   no"), "{said}");
             assert!(
-                said.contains("help: the same rules satisfy it with `operators:"),
+                said.contains("help: the output of these rules is monotone with `operators:"),
                 "{said}"
             );
             let place = said

@@ -194,7 +194,7 @@ type ExaminedProfile = (
     Vec<AcceptedFindings>,
 );
 
-/// Reads a profile. A rule set with errors is refused, because its errors are in another file.
+/// Reads and checks a profile. Errors of its rule set are returned as a failure, because they are in another file.
 fn examine_profile(path: &Path, source: &Source) -> Result<ExaminedProfile, Failure> {
     let profile = match Profile::from_source(source) {
         Ok(profile) => profile,
@@ -213,7 +213,7 @@ fn examine_profile(path: &Path, source: &Source) -> Result<ExaminedProfile, Fail
     Ok((Some(profile), findings, input_risks, accepted))
 }
 
-/// A line for each input: `battery  0 (empty)  battery_risk 95 %, FAIL`.
+/// Writes a line for each input: `battery  0 (empty)  battery_risk 95 %, FAIL`.
 fn write_input_risks(
     out: &mut impl Write,
     file: &str,

@@ -13,7 +13,7 @@ use crate::{
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The shell
+    /// The shell for which the script is printed
     #[arg(value_enum)]
     shell: Shell,
 }

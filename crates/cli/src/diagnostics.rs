@@ -35,8 +35,8 @@ pub(crate) fn is_meant_as_rules(text: &str) -> bool {
     flagred_interchange::Format::of(text).is_some() || flagred::loaded::is_meant_as_rules(text)
 }
 
-/// Returns the command that helps with a finding. It is added here because the engine does not know
-/// the command line.
+/// Returns the command that helps with a finding. It is added here because the engine must not depend on the
+/// command line.
 fn command(code: &str) -> Option<&'static str> {
     match code {
         "empty-file" => Some("`flagred new NAME` writes a rule set to start from"),
@@ -50,7 +50,7 @@ fn command(code: &str) -> Option<&'static str> {
 /// Draws findings on standard error.
 pub(crate) fn show(findings: &Findings, file: &str, text: &str) {
     let mut err = anstream::stderr().lock();
-    // If standard error is closed, there is no other way to report that.
+    // A write fails if standard error is closed. That cannot be reported elsewhere.
     let _ = write!(err, "{}", draw(&findings.0, file, text, true));
 }
 

@@ -14,7 +14,7 @@ use crate::path::{self, RULES, has_ending};
 pub(crate) enum Exit {
     /// Nothing to report: 0.
     Clean,
-    /// Some of the input could not be read or was not a multirotor: 3.
+    /// An input could not be read or used, such as a log of a fixed-wing aircraft: 3.
     Unreadable,
     /// Findings at or above the level that the user chose: 1.
     Findings,
@@ -120,7 +120,7 @@ impl Failure {
         if !self.message.is_empty() {
             let mut err = anstream::stderr().lock();
             let red = anstyle::AnsiColor::Red.on_default().bold();
-            // If standard error is closed, there is no other way to report that.
+            // A write fails if standard error is closed. That cannot be reported elsewhere.
             let _ = writeln!(err, "{red}error{red:#}: {}", visible(&self.message));
             for detail in &self.details {
                 let _ = writeln!(err, "  {}", visible(detail));
@@ -201,7 +201,7 @@ pub(crate) fn refuse(error: &clap::Error) -> u8 {
         let end = shown.get(tip..).and_then(|tip| tip.find("\n\n"));
         shown.replace_range(tip..end.map_or(shown.len(), |end| tip + end + 2), "");
     }
-    // If the stream is closed, that cannot be reported.
+    // A write fails if the stream is closed. That cannot be reported elsewhere.
     if shown == text {
         let _ = error.print();
     } else {

@@ -61,7 +61,7 @@ pub(crate) fn confusion(
     let width = lengths.map(|text| text.chars().count()).max().unwrap_or(0);
     writeln!(
         out,
-        "classes     {:.1} % of the cross-validated rows are predicted as their class; for each class, the rows predicted as",
+        "classes     {:.1} % of the cross-validated rows are predicted as their class; lines: class of the rows, columns: predicted class",
         100.0 * confusion.accuracy()
     )?;
     let line = |cells: &mut dyn Iterator<Item = String>| {

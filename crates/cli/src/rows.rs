@@ -160,7 +160,7 @@ impl OutputClaims {
             false => "--rising",
         };
         let message = format!(
-            "`{option}` is about a rule set, and `{}` is a profile",
+            "`{option}` needs a rule set, but `{}` is a profile",
             profile.display()
         );
         Err(Failure::usage(message).help("check the rule set that the profile names under `rules`"))
@@ -342,8 +342,13 @@ pub(crate) fn columns(
         data.refused.append(&mut table.skipped);
         let columns = format.layout.columns(names, &table.header)?;
         let optional = |name: Option<&str>| {
-            name.map(|name| table.header.require(name, "leave that option out"))
-                .transpose()
+            name.map(|name| {
+                table.header.require(
+                    name,
+                    "correct `--weight` or `--group-by`, or leave the option out",
+                )
+            })
+            .transpose()
         };
         let weight = optional(weight)?;
         let group = optional(group)?;
@@ -427,8 +432,8 @@ pub(crate) fn in_range(read: Data, model: &Model) -> Data {
         |(value, input): &(&f64, &Variable)| !(input.low..=input.high).contains(*value);
     let mut kept = Vec::with_capacity(rows.len());
     for (row, place) in rows {
-        // The output, which is the last value, may be outside its range: constants are then limited to the end of the
-        // range.
+        // The output, which is the last value, may be outside its range: constants approach it as far as they are
+        // allowed to.
         match row.values.iter().zip(&model.inputs).find(is_outside) {
             None => kept.push((row, place)),
             Some((value, input)) => {
@@ -502,7 +507,7 @@ pub(crate) fn refuse(refused: &[String], rows: usize, purpose: &str) -> Failure 
     .details(details);
     if outside > 1 && 2 * outside > rows {
         return failure.help(format!(
-            "{outside} of {rows} rows are outside a range, so their unit is probably another one: convert the values, or correct the `range` in the rule set"
+            "{outside} of {rows} rows are outside a range, so their values are probably in another unit: convert them, or correct the `range` in the rule set"
         ));
     }
     failure.help(match (count < rows, outside > 0) {

@@ -1,4 +1,4 @@
-//! `flagred simplify`: a rule set with fewer rules and the same outputs.
+//! `flagred simplify`: a rule set with fewer rules and inputs, whose outputs are the same within a tolerance.
 
 use std::{io::Write, path::PathBuf};
 
@@ -74,7 +74,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 "the tables contain no rows; leave out `--rows-only`"
             }
             SimplifyError::TooManyRules { .. } => {
-                "learn it with fewer rules, such as with a higher `--min-support`, or split it by outputs"
+                "learn it with fewer rules, for example with a higher `--min-support`, or split it by outputs"
             }
             SimplifyError::Type2 => "remove the keys that make terms type-2, such as `blur` or `lower`, to simplify the rules",
             _ => "`flagred check` shows what is wrong with the rule set",

@@ -108,7 +108,8 @@ pub(crate) struct Format {
     #[command(flatten)]
     pub(crate) layout: Layout,
 
-    /// Skip rows that cannot be parsed. For rules from data, also skip rows whose values are unknown or outside their range
+    /// Skip rows that cannot be parsed. Commands that derive a rule set also skip rows whose values are unknown or outside
+    /// their range
     #[arg(long)]
     pub(crate) skip_bad_rows: bool,
 }
@@ -179,7 +180,7 @@ pub(crate) fn rule_set_first(
 }
 
 impl Format {
-    /// The first of these options that differs from its default.
+    /// Returns the name of the first of these options whose value differs from its default.
     pub(crate) fn given(&self) -> Option<&'static str> {
         let skip = self.skip_bad_rows.then_some("--skip-bad-rows");
         self.layout.given().or(skip)
@@ -187,14 +188,14 @@ impl Format {
 }
 
 impl Suffix {
-    /// This option if it differs from its default.
+    /// Returns the name of this option if its value differs from the default.
     pub(crate) fn given(&self) -> Option<&'static str> {
         (!self.suffix.is_empty()).then_some("--suffix")
     }
 }
 
 impl Layout {
-    /// The first of these options that differs from its default.
+    /// Returns the name of the first of these options whose value differs from its default.
     pub(crate) fn given(&self) -> Option<&'static str> {
         let column = (!self.column.is_empty()).then_some("--column");
         let delimiter = (self.delimiter != b',').then_some("--delimiter");
@@ -413,8 +414,8 @@ impl Table {
         }
     }
 
-    /// Refuses a column without any number; `help` is added if the column contains words. A table with a single row is
-    /// not refused here, because the message about its bad cell is more specific.
+    /// Refuses a column without any number; `help` is added if there is no advice about its first cell. A table with a
+    /// single row is not refused here, because the message about its bad cell is more specific.
     pub(crate) fn has_numbers(&self, column: usize, help: &str) -> Result<(), Failure> {
         let cell = |row| self.text(row, column);
         let mut cells = (0..self.len()).map(|row| Cell::of(cell(row).as_bytes()));

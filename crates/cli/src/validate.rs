@@ -73,7 +73,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Some(table) => (rows(table, &estimators)?, Exit::Clean),
         None => flights(arguments, &estimators)?,
     };
-    // The flights in folders are known only after the folders have been listed.
+    // The files in folders are known only after the folders have been listed, so the output is checked again.
     let mut files = Files::reading(evaluation.records().iter().map(Record::file))?;
     let svg = files.optional(arguments.svg.as_ref())?;
     let drawn = match &svg {
@@ -149,7 +149,7 @@ fn rows(path: &Path, estimators: &Estimators) -> Result<Evaluation, Failure> {
     let table = Table::read(path, b',')?;
     table.header.require(
         flagred_evaluation::ERROR,
-        "`flagred dataset --profile NAME` writes a table with it: critical moments are identified by the attitude error",
+        "`flagred dataset --profile NAME` writes a table with this column: critical moments are identified by the attitude error",
     )?;
     let rows = FlightTable {
         columns: table.header.names.iter().map(String::as_str).collect(),

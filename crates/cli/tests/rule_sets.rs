@@ -75,9 +75,7 @@ fn check_verifies_claims_about_outputs() {
     assert_eq!(output.status.code(), Some(0));
     let (output, _) = flagred(&["check", "flagred", "--falling", "margin"], "");
     assert_eq!(output.status.code(), Some(2));
-    assert!(
-        errors(&output).contains("`--falling` is about a rule set, and `flagred` is a profile")
-    );
+    assert!(errors(&output).contains("`--falling` needs a rule set, but `flagred` is a profile"));
 }
 
 #[test]

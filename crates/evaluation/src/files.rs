@@ -15,7 +15,8 @@ pub struct Candidate {
     pub is_named: bool,
 }
 
-/// Returns the files, and the files in the folders and their subfolders, sorted by name.
+/// Returns the files that `paths` names, and all files in the folders that it names and in their subfolders. The files of
+/// each named folder are sorted by path.
 ///
 /// # Errors
 /// If a folder cannot be read.
@@ -47,7 +48,7 @@ fn walk(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), ReadError> {
     };
     for entry in fs::read_dir(folder).map_err(unreadable)? {
         let entry = entry.map_err(unreadable)?;
-        // A link could lead back to its own folder.
+        // `file_type` does not follow links: a link could lead back to a folder that contains it.
         let kind = entry.file_type().map_err(unreadable)?;
         if kind.is_dir() {
             walk(&entry.path(), found)?;

@@ -100,7 +100,7 @@ pub enum ExamineError {
     },
 }
 
-/// A rule set whose gaps are filled, so that it has a prediction for any inputs.
+/// A rule set whose gaps are filled where possible, which predicts the output for given inputs.
 struct Predictor {
     /// `None` without rules; then there are no predictions.
     rules: Option<Rules>,
@@ -261,9 +261,9 @@ fn fingerprint(values: &[f64]) -> u64 {
 /// The errors of each gap method in cells whose rule was removed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GapComparison {
-    /// The number of rules that were removed, one at a time. Rules whose gap contains no samples are not removed.
+    /// The number of rules that were removed, one at a time. Rules whose gap contains no rows are not counted.
     pub rules: u32,
-    /// The errors if no rule is removed: a lower bound for the errors of the methods.
+    /// The errors on the same rows if no rule is removed, for comparison with the errors of the methods.
     pub with_the_rule: MethodErrors,
     /// The errors of each method.
     pub methods: Vec<(GapMethod, MethodErrors)>,

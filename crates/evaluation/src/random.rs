@@ -1,4 +1,4 @@
-//! A random number generator that is the same on all platforms.
+//! A random number generator that gives the same numbers on all platforms.
 
 /// SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014).
 #[derive(Debug, Clone)]

@@ -98,9 +98,9 @@ pub struct WithinGroups {
 /// A point of the receiver operating characteristic.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RocPoint {
-    /// The share of the predictions without a critical outcome whose score is at or above this point.
+    /// The share of the non-critical predictions whose score is at or above the threshold of this point.
     pub false_positive_rate: f64,
-    /// The share of the predictions with a critical outcome whose score is at or above this point.
+    /// The share of the critical predictions whose score is at or above the threshold of this point.
     pub true_positive_rate: f64,
 }
 

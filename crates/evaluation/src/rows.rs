@@ -9,7 +9,7 @@ use crate::{
     scores::Case,
 };
 
-/// The required column with the attitude error of a flight.
+/// The name of the column that must contain the attitude error of each flight.
 pub const ERROR: &str = "att_rmse_deg";
 
 /// A table with one row for each flight.

@@ -55,8 +55,8 @@ pub struct WarningMatches {
 /// Matches the warnings of a flight with its episodes, within the judged time of the flight.
 ///
 /// A warning is not false if an episode starts during the warning or within 10 s after its end, or if the warning
-/// begins during an episode or within 1 s after one. `lost_s` is the time at which the log ended in the air. What
-/// followed is unknown, so a warning that is on at that time, or ended up to 10 s before, is not false.
+/// begins during an episode or within 1 s after one. `lost_s` is the time at which the log ended in the air. The
+/// rest of the flight is unknown, so a warning that is on at that time, or ended up to 10 s before, is not false.
 ///
 /// # Example: a false warning, and one four seconds ahead
 /// ```

@@ -56,7 +56,7 @@ const PERCENT: (Scale, &str) = (Scale::new(0.0, 100.0), "%");
 /// The maximum number of events that are drawn; the last one shows the number of further events.
 const MAX_EVENTS: usize = 200;
 
-/// The stretch that is drawn: from the first take-off to the last landing, or the whole log if there is none.
+/// The stretch that is drawn: from the first take-off to the last landing, or the whole log if no time in the air is known.
 pub(crate) fn stretch(flight: &Flight) -> Stretch {
     let air = flight.in_air.iter().flat_map(|air| &air.spans);
     let hull = air
@@ -183,7 +183,7 @@ pub(crate) fn gap_s(estimator: &Estimator, rate_hz: Option<f64>) -> f64 {
     rate_hz.map_or(longest_gap_s, |rate_hz| longest_gap_s.max(5.0 / rate_hz))
 }
 
-/// The classes of the lines of other risks.
+/// The classes in the style sheet for the curves of other risks.
 const OTHER_RISKS: [&str; 3] = ["value", "motor", "mean"];
 
 /// The curves of the risk, of the elevated risk, and of the other risks of the profile; `None` if no risk is known.
@@ -317,7 +317,7 @@ pub(crate) fn motors(flight: &Flight, estimator: &Estimator, stretch: Stretch) -
     panels.filter(Panel::has_data).collect()
 }
 
-/// The inputs of the rules, each with its index.
+/// The curves of the inputs of the rules, each with the index of its input.
 pub(crate) fn inputs(
     assessed: &Assessment,
     estimator: &Estimator,

@@ -1,5 +1,5 @@
 //! HTML pages: the report of one flight, and the comparison of several flights, each as one self-contained file; also
-//! the parts that both are made of.
+//! the parts that programs embed in their own pages.
 
 use flagred::{flight::Peak, loaded::Loaded};
 use fuzzy::drawing::{EscapedText, Frame, SvgDocument};

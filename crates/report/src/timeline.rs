@@ -71,22 +71,22 @@ pub(crate) struct Panel {
     pub(crate) size: Size,
     /// The curves.
     pub(crate) lines: Vec<Line>,
-    /// Values that are marked by horizontal lines.
+    /// A shaded area behind the curves, such as the interval of a risk.
     pub(crate) band: Option<Line>,
-    /// Values that are marked over the whole time.
+    /// Values that are marked by horizontal lines.
     pub(crate) marks: Vec<Mark>,
-    /// Shaded ranges of values.
+    /// Ranges of values that are shaded over the whole time.
     pub(crate) zones: Vec<Scale>,
 }
 
 /// The height of a panel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Size {
-    /// A main panel, which is the highest.
+    /// A main panel, the tallest size.
     Large,
     /// A panel of medium height.
     Medium,
-    /// A small panel, one of many below each other: only the ends of its scale are labelled.
+    /// A small panel, one of many in a column: only the ends of its scale are labelled.
     Small,
 }
 
@@ -108,7 +108,7 @@ impl Line {
 }
 
 impl Panel {
-    /// A panel of curves with a scale and a unit, without marks and zones.
+    /// A panel of curves with a scale and a unit, without a band, marks or zones.
     pub(crate) fn new(
         title: impl Into<String>,
         (scale, unit): (Scale, &str),

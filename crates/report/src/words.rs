@@ -124,8 +124,8 @@ pub fn write(
     Ok(())
 }
 
-/// Writes the assessment of one of several flights on one line: the verdict, the log, and its most
-/// severe finding or the reason why there is no verdict.
+/// Writes the assessment of one of several flights on one line: the verdict or the reason why there is none, the log, the
+/// highest risks, unknown risks, assumed inputs and the most severe finding.
 pub fn write_line(
     out: &mut impl Write,
     name: &str,
@@ -199,7 +199,7 @@ pub(crate) fn in_the_air(flight: &Flight) -> &'static str {
     }
 }
 
-/// The vehicle on one line: firmware, frame, motors and ranges.
+/// The vehicle on one line: format of the log, firmware, frame, motors and ranges.
 pub fn vehicle(flight: &Flight) -> String {
     let mut parts = vec![flight.format.to_string()];
     parts.extend(flight.vehicle.firmware.clone());

@@ -62,10 +62,9 @@ pub struct Plan<'a> {
     pub name: &'a str,
     /// The rule set.
     pub rules: Rules<'a>,
-    /// For each input of the rule set, its index among the inputs of the profile; `u32::MAX` for an input that the risk
-    /// does not depend on.
+    /// The index of the output that is the risk, among the outputs of the rule set.
     pub output: u32,
-    /// For each input of the rule set its index among the inputs of the profile; `u32::MAX` for an input that the risk
+    /// For each input of the rule set, its index among the inputs of the profile; `u32::MAX` for an input that the risk
     /// does not depend on.
     pub order: &'a [u32],
     /// The channels that are observed.
@@ -78,7 +77,7 @@ pub struct Plan<'a> {
     pub settings: Settings,
     /// The coverage below which the rules do not apply and the risk is interpolated.
     pub coverage_below: f64,
-    /// The values that fill gaps of the rules; `None` if the rules cover nothing.
+    /// The values that fill gaps of the rules; `None` if nothing is filled.
     pub filled: Option<FilledKnots<'a>>,
     /// The propositions of all rules, grouped by rule. Within each rule, the most specific proposition comes first.
     pub propositions: &'a [Proposition],

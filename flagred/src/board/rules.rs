@@ -129,7 +129,7 @@ pub struct RuleMemory<'m> {
 
 /// Evaluates a rule set in memory that the caller provides.
 #[derive(Debug)]
-#[doc(hidden)] // For the C interface. `flagred export --rust` writes a function.
+#[doc(hidden)] // For the C interface. For Rust, `flagred export --rust` writes a function instead.
 pub struct Evaluator<'a> {
     pub(super) rules: &'a Rules<'a>,
     pub(super) scratch: Scratch<'a>,

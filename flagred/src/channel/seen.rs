@@ -152,8 +152,8 @@ impl Now<'_> {
     }
 }
 
-/// Records which signals are known, in the air and on the ground, for the inputs that have a value
-/// for missing signals.
+/// Records whether the signals of each input with `if_missing` are known in a sample, in the air or on the
+/// ground.
 pub(crate) fn note(
     (channels, inputs): (&[Channel], &[Input]),
     seen: &mut [ChannelState],
@@ -338,13 +338,13 @@ impl Channel {
         }
     }
 
-    /// The moments of the values of the motors, or of the value into which they are combined; empty if a motor is unknown.
+    /// The moments of the values of the motors, or of the value into which they are combined; empty if a motor that counts
+    /// is unknown.
     fn over(&self, mut motors: impl Iterator<Item = f64> + Clone) -> Moments {
         if let Motors::One(motor) = self.motors {
             let one = motors.nth(motor as usize);
             return self.threshold(one.unwrap_or(f64::NAN));
         }
-        // If one motor is unknown, so is the result.
         if self.motors == Motors::Pooled {
             return Moments::alike(motors, |value| self.counted(value));
         }

@@ -113,8 +113,9 @@ pub(super) fn thresholds(
     }
 }
 
-/// Returns the terms of inputs that the rules for an output leave out, as propositions: `battery IS enough`. Empty if a rule
-/// has a hedge or a `NOT`, which may cover other terms, or if it joins conditions.
+/// Returns the terms that no rule for an output mentions, of the inputs that these rules read, as propositions:
+/// `battery IS enough`. Empty if a rule has a `NOT` or a hedge other than `very`, which may cover other terms, or if it
+/// joins conditions.
 fn omitted_terms(model: &Model, output: &str) -> Vec<String> {
     let rules = model.rules.iter().map(|rule| &rule.rule);
     let rules = rules.filter(|rule| {

@@ -83,8 +83,8 @@ pub fn risks_of_single_inputs(estimator: &Estimator) -> Vec<InputRisk> {
 
 /// Warns about each input that does not come from the motors and cannot raise a level alone.
 ///
-/// The inputs from motor commands are symptoms of one cause and rise together, so each of them may be one vote among
-/// many. A problem that another signal measures may not show in the motors at all.
+/// The inputs from motor commands are symptoms of one cause and rise together, so none of them has to raise a level
+/// alone. A problem that another signal measures may not show in the motors at all.
 pub(super) fn outvoted(
     estimator: &Estimator,
     at: &ValuePositions,
@@ -92,7 +92,7 @@ pub(super) fn outvoted(
 ) -> Vec<Diagnostic> {
     let profile = estimator.profile();
     let risks = risks_of_single_inputs(estimator);
-    // As long as its signal is unknown, it is also unknown whether an input can raise a warning.
+    // If the signal of an input is probably misspelt, it is unknown whether the input can raise a warning.
     let is_other = |input: &&ProfileInput| {
         !input.source.signal.is_computed_from_commands() && unknown_signal(input, signals).is_none()
     };

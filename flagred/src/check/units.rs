@@ -225,7 +225,7 @@ fn range_of_signal(source: &Source) -> (f64, f64) {
     }
 }
 
-/// The minimum and maximum of the values of a source; `None` if it is unbounded.
+/// The minimum and maximum of the values of a source; `None` if the values are unbounded.
 pub(super) fn range(source: &Source) -> Option<(f64, f64)> {
     let (low, high) = range_of_signal(source);
     let (low, high) = match source.statistic {

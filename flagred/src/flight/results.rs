@@ -369,7 +369,7 @@ fn every_other<T>(all: &mut Vec<T>) {
     });
 }
 
-/// Whether two reasons differ only in their numbers.
+/// Whether two reasons are of the same kind and, if they name an input, name the same input.
 fn is_same(a: &Unknown, b: &Unknown) -> bool {
     let input = |reason: &Unknown| match reason {
         Unknown::WarmingUp { input }

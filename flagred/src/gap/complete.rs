@@ -20,8 +20,9 @@ type MinimumDegrees = Vec<Vec<f64>>;
 ///
 /// The range of each input is divided at the corners of its terms and halfway between them. Degrees are linear within
 /// an interval, so their minimum is at an end. The minimum strength of a rule in a cell follows from the minimum
-/// degrees in the intervals. Rules with operators other than AND and IS, and curved terms, count as 0. Nothing is
-/// proven for outputs that read other outputs (which may have no value), for rule blocks and for activation methods.
+/// degrees in the intervals. Rules with operators other than AND and IS are ignored, and the degree of a term that is
+/// curved or has a step counts as 0. Nothing is proven for outputs that read other outputs (which may have no value),
+/// for rule blocks and for activation methods.
 pub(crate) fn has_no_gap(model: &Model, output: &Output, coverage_below: f64) -> bool {
     if !model.reads(&output.variable.name).is_empty() || !is_plain(model) {
         return false;

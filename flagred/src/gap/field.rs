@@ -56,7 +56,7 @@ impl Field<'_> {
             let behind = coordinates
                 .get(index + 1)
                 .map_or(0.0, |b| b - coordinates[index]);
-            // An input with only one knot has no width.
+            // An input with only one knot does not change the size of the cell.
             if coordinates.len() > 1 {
                 (before + behind) / 2.0
             } else {

@@ -2,7 +2,7 @@
 //!
 //! Every filled value is the mean of its neighbours, each weighted with the area of the wall between the two cells
 //! divided by the distance of the two knots (finite volumes). So there is no extremum inside the gap, and the
-//! solution cannot overshoot. The outer ends of the grid have no flux across them.
+//! solution cannot overshoot. No flux crosses the outer ends of the grid.
 
 use super::field::Field;
 

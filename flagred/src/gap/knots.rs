@@ -33,7 +33,7 @@ impl Knots {
     /// The grid over the part of each input in which terms change; beyond this part the rules cannot distinguish
     /// points. An input whose name is not in `read` has one coordinate.
     ///
-    /// `None` if even the peaks are too many, as for 16 inputs of two terms each.
+    /// `None` if the grid is too large even with two coordinates for each input, as for 16 inputs.
     pub(super) fn of(model: &Model, read: &[&str]) -> Option<Knots> {
         let axes = model.inputs.iter().map(|input| {
             if !read.contains(&input.name.as_str()) {

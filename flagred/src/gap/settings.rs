@@ -22,7 +22,7 @@ pub enum GapMethod {
     Nearest,
     /// `sum(v / d^power) / sum(1 / d^power)` over the nearest covered knots at the edge of the gap.
     ///
-    /// Over *all* cells, the usual form of the method, a corner of the map would get an average of the whole map: 49 %
+    /// In its usual form, over *all* cells, the method would give a corner of the map an average of the whole map: 49 %
     /// for a saturated drone. Therefore the number of neighbours is limited.
     InverseDistance {
         /// The power of the distance, above 0.

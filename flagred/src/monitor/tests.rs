@@ -114,7 +114,7 @@ fn risk_at(assessments: &[Update], t_s: f64) -> Result<f64, Unknown> {
     at.risk.map(|estimate| estimate.risk_pct)
 }
 
-/// A ratio `x / max(per, at_least)` may divide by an input that the rules do not have. It is unknown if that input is unknown.
+/// A ratio `x / max(per, at_least)` may divide by an input that the rules do not have. If that input is unknown, so is the ratio.
 #[test]
 fn a_ratio_divides_two_other_inputs() {
     let text = "flagred: 1

@@ -17,7 +17,7 @@ pub(crate) struct Alert {
     reached_since_s: [Option<f64>; 2],
     /// The time since which any threshold has been reached, in seconds.
     begun_s: Option<f64>,
-    /// The highest risk and elevated risk in % of the open finding, or else since [`Alert::begun_s`].
+    /// The highest risk and elevated risk, in %, during the open finding, or else since [`Alert::begun_s`].
     highest_pct: [f64; 2],
     finding: Option<Finding>,
     /// Whether the level of the finding was raised but its cause is not set yet.
@@ -71,7 +71,7 @@ impl Alert {
         self.finding
     }
 
-    /// The beginning in seconds and the highest risk in % of the open finding, or of the finding that will be
+    /// The beginning (in seconds) and the highest risk (in %) of the open finding, or of the finding that will be
     /// opened if a threshold stays reached.
     #[cfg(feature = "std")]
     pub(crate) fn peak(&self) -> Option<(f64, f64)> {
@@ -200,7 +200,7 @@ impl Alert {
             raised_s: t_s,
             ..Finding::NONE
         });
-        // An earlier FAIL continues.
+        // After an earlier FAIL, the finding keeps the time of that FAIL.
         let failed_s = opened.failed_s.or(failed_s);
         let same = opened.severity == level;
         let is_worse = level > opened.severity;

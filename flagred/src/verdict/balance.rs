@@ -1,7 +1,7 @@
 //! The balance of the motors: detects a motor that works harder than before, and whether all motors work as before.
 //!
-//! A motor that loses thrust is commanded higher until the vehicle is level again. Its own command rises most, yaw
-//! included: yaw distinguishes it from the opposite motor and from the other motor of its arm.
+//! A motor that loses thrust is commanded higher until the vehicle is level again. Its own command rises most if the
+//! yaw part is included: this part distinguishes it from the opposite motor and from the other motor of its arm.
 
 use super::{Limit, Measure, MotorFinding};
 use crate::{

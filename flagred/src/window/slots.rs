@@ -56,9 +56,9 @@ impl Window {
 }
 
 impl Window {
-    /// The value below which `percent` % of the total weight of the slots' means lies. Each of the sorted means is
-    /// the percentile at the middle of its own weight. Between two of them the percentile is interpolated linearly;
-    /// beyond the outermost ones it is constant. `None` in an empty window.
+    /// The value below which the slots' means have `percent` % of their total weight. Each of the sorted means is the
+    /// percentile for the weight of the lower means plus half its own weight. Between two means the percentile is
+    /// interpolated linearly; beyond the lowest and the highest mean it is constant. `None` in an empty window.
     pub(crate) fn percentile(&self, percent: f64) -> Option<f64> {
         let mut sorted = [(0.0, 0.0); SLOTS + 2];
         let mut count = 0;

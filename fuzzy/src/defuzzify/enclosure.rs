@@ -259,7 +259,7 @@ impl Set {
                 .pieces(lower, self.operators, workspace, &mut |piece| {
                     lower_part.add_between(piece, of_lower);
                 });
-            // The bisector is left of x.
+            // If the left area is larger, the bisector is left of x.
             if left.area > right.area {
                 to = x;
             } else {

@@ -146,7 +146,7 @@ impl Bases {
         self.known.get(set).copied()
     }
 
-    /// Returns the base of a set, adding it if necessary.
+    /// Returns the index of the base of a set, plus one, and adds the base if necessary; 0 for the empty set.
     fn of(&mut self, set: &[u32]) -> u32 {
         if let Some(base) = self.known(set) {
             return base;

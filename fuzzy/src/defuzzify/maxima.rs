@@ -102,7 +102,7 @@ impl Maxima {
         };
     }
 
-    /// Counts the end of the previous piece as a maximum, unless the set is higher beyond it.
+    /// Counts the end of the previous piece as a maximum if the piece rises to it and the set is not higher beyond it.
     fn close(&mut self, goes_on_higher: bool) {
         if self.before.rises && !goes_on_higher {
             self.point(self.before.x);
@@ -137,7 +137,8 @@ fn peaks(piece: &Piece<'_>, visit: &mut dyn FnMut(f64, f64)) -> Option<(bool, bo
 /// The number of intervals of a piece at whose ends the slope is evaluated.
 const STRETCHES: u32 = 32;
 
-/// The distance from an end at which the slope is evaluated, to be beyond a kink at the end itself.
+/// The distance from an end, as a fraction of the width, at which a function is evaluated, so that a kink or step at the
+/// end itself has no effect.
 pub(super) const INSIDE: f64 = 1e-12;
 
 /// Calls `visit` for each position in [0, 1] at which a function has a maximum, that is, its slope falls through 0.

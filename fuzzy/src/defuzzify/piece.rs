@@ -169,8 +169,8 @@ const MAX_HALVINGS: usize = 400;
 const AGREEMENT: f64 = 1e-13;
 
 /// Returns `(integral of f(t) dt, integral of t f(t) dt)` from 0 to `end`, by Gauss-Legendre quadrature. An interval
-/// is split in two until its integral agrees with the sum over its parts. `known` is the area of the rest of the
-/// set, relative to which the error is measured.
+/// is split in two until its integral agrees with the sum over its parts. The error is measured relative to the
+/// integral plus `known`, the area of the preceding pieces.
 fn integrate(curve: &dyn Fn(f64) -> f64, end: f64, known: f64) -> (f64, f64) {
     let mut stack = [(0.0, 0.0, 0.0, 0.0); DEEPEST + 1];
     let (whole, moment) = gauss(curve, 0.0, end, 0.0);

@@ -3,8 +3,8 @@
 /// A segment of a contour line. Coordinates are in units of cells, relative to the first cell.
 pub(super) type Piece = [(f64, f64); 2];
 
-/// Returns the segments of the line at `level` through values at the corners of a grid. Cells with an unknown corner
-/// have no segments.
+/// Returns the segments of the contour line at `level`, given the values at the corners of the grid cells. Cells with an
+/// unknown corner have no segments.
 pub(super) fn pieces(
     columns: usize,
     rows: usize,

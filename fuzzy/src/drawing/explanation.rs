@@ -318,7 +318,7 @@ pub(super) fn terms(
     document.legend_entries(frame.right() + 14.0, frame.top, &keys);
 }
 
-/// Marks a value over the height of a frame.
+/// Draws a vertical line at a value, over the whole height of a frame.
 fn marker(document: &mut SvgDocument, frame: &Frame, x: Scale, value: Option<f64>) {
     if let Some(value) = value {
         let share = x.share(value).clamp(0.0, 1.0);

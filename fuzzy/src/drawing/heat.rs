@@ -189,7 +189,7 @@ pub(super) fn curve(document: &mut SvgDocument, frame: &Frame, slice: &Slice) {
         let at = |value| frame.at(slice.x.scale().share(*x), slice.share(value));
         let point = cell.value.map(at);
         if this != style {
-            // Adjacent sections share their point.
+            // Adjacent sections share one point.
             piece.extend(point);
         }
         if this != style || point.is_none() {

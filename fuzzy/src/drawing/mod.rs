@@ -1,7 +1,7 @@
 //! Drawings of rule sets, as SVG and as text.
 //!
-//! All functions take plain data and return text. They open no files, do not depend on a terminal, and need no other
-//! crate.
+//! All functions take plain data and return text. They open no files, and do not depend on a terminal or a graphics
+//! library.
 //!
 //! | drawing | as SVG | as text |
 //! |---|---|---|

@@ -8,8 +8,8 @@ use super::{Engine, EvaluateError, Outcome, Scratch, Stage, StageScratch};
 use crate::rows::each;
 use crate::table::{self, Results};
 
-/// The number of rows that are evaluated together: several of the widest vectors, so that the overhead per block is
-/// small, but few enough for the degrees to stay in the cache.
+/// The number of rows that are evaluated together: enough to fill several of the widest vectors and to keep the overhead
+/// per block small, but few enough for the degrees to stay in the cache.
 pub(crate) const ROWS: usize = 64;
 
 /// Batches with fewer rows are evaluated row by row, which is faster.

@@ -355,7 +355,7 @@ proptest! {
         }
     }
 
-    /// A model that is written and parsed again evaluates to the same outcomes.
+    /// A model that is written and parsed again equals the original.
     #[test]
     fn written_blocks_read_back(built in any_blocks()) {
         let text: String = yaml::to_string(&built);

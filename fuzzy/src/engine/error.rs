@@ -53,7 +53,8 @@ pub enum EvaluateError {
         /// The error message, which states the expected type.
         message: String,
     },
-    /// An input is NaN or infinite, so there is nothing to explain.
+    /// An input, or an end of its interval, is NaN or infinite. [`Engine::evaluate`](super::Engine::evaluate) returns
+    /// [`State::InputNotFinite`](super::State::InputNotFinite) instead of this error.
     InputNotFinite,
     /// No rule of an output fired, and the model treats that as an error.
     NoRuleFired {

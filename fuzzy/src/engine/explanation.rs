@@ -138,7 +138,7 @@ pub struct Share {
     /// singletons.
     pub value: Option<f64>,
     /// The implied set: `(value, degree)` at evenly spaced values over the range. Empty for Takagi-Sugeno and Tsukamoto
-    /// outputs. Not serialised.
+    /// outputs and for singletons. Not serialised.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub implied: Vec<(f64, f64)>,
 }

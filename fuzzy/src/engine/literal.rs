@@ -100,8 +100,8 @@ impl Literals {
     }
 }
 
-/// Returns the lines of a straight term without hedges, each with the start of its interval, beginning at minus
-/// infinity. `None` for any other literal.
+/// Returns the lines of a straight term of height 1 without hedges, each with the start of its interval, beginning at
+/// minus infinity. `None` for any other literal.
 pub(super) fn lines(literal: &Literal) -> Option<Vec<(f64, Line)>> {
     if !literal.hedges.is_empty() || literal.term.height != 1.0 {
         return None;

@@ -379,7 +379,7 @@ impl Stage {
                 partial: vec![PartialConjunction::NONE; sizes.partial as usize],
                 next: vec![PartialConjunction::NONE; sizes.partial as usize],
                 stack: AlignedRows::new(sizes.stack as usize),
-                // Strengths are cleared eight at a time.
+                // At least eight, because clearing the first eight inline is faster than a call.
                 strengths: AlignedRows::new(strengths.next_multiple_of(8)),
                 strongest: vec![StrongestRule::NONE; self.outputs.len()],
             },

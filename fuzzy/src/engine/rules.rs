@@ -1,4 +1,4 @@
-//! Rules as arrays: plain ANDs in a uniform table, a dense table or a trie; all other rules as programs.
+//! Rules as arrays: a uniform table, a dense table or a trie of plain ANDs, and programs.
 
 use alloc::{vec, vec::Vec};
 
@@ -260,8 +260,8 @@ impl OwnedTable {
         Some(())
     }
 
-    /// Replaces a dense table by a uniform one; `None` if an input has curved or hedged literals, or if an evaluation
-    /// would visit too many cells.
+    /// Replaces a dense table by a uniform one; `None` if an input has curved or hedged literals or more than two literals
+    /// above 0 at the same value, or if there are too many axes or actions per cell.
     fn uniform(&mut self, inputs: &[Literals], unused: u32) -> Option<()> {
         let (mut axes, mut cuts, mut lines) = (Vec::new(), Vec::new(), Vec::new());
         for dimension in &self.dimensions {

@@ -5,8 +5,8 @@ use alloc::{vec, vec::Vec};
 use super::{Engine, EvaluateError, Outcome, Scratch, State};
 use crate::model::{Model, NoRuleFires, Output};
 
-/// Evaluates rows in order. An output with `when_no_rule_fires: previous` keeps the value of the previous row, and
-/// outputs that read it use that value.
+/// Evaluates rows in order. If no rule fires, an output with `when_no_rule_fires: previous` keeps the value of the previous
+/// row, and outputs that read it use that value.
 ///
 /// An engine has no memory: [`Engine::evaluate`] and the methods based on it treat every row as the first row.
 ///

@@ -162,7 +162,7 @@ fn silence(rule: &Rule, context: &ConditionContext<'_>) -> Silence {
     }
 }
 
-/// Returns the first part of an AND that has degree 0 and therefore makes the whole condition 0.
+/// Returns the first part of degree 0 of an AND; the condition itself if it is not an AND or has no such part.
 fn zero<'c>(
     condition: &'c Condition,
     operators: Operators,

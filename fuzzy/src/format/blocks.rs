@@ -128,14 +128,14 @@ pub(super) fn activation(
         let method = node.choice(what, &METHODS, findings);
         if let Some(finding) = findings.get_mut(before) {
             let word = node.as_text().unwrap_or("");
-            let needs = |value: &str| format!("{what} is `{word}`, which needs a {value}");
+            let needs = |value: &str| format!("{what} is `{word}`, which needs {value}");
             let help = match word {
                 "threshold" => {
-                    finding.message = needs("comparison");
+                    finding.message = needs("a comparison");
                     "write `{threshold: {at_least: 0.3}}`".into()
                 }
                 _ if keys.contains(&word) => {
-                    finding.message = needs("number of rules");
+                    finding.message = needs("the number of rules");
                     format!("write how many rules may fire: `{{{word}: 1}}`")
                 }
                 _ => HELP.into(),

@@ -184,7 +184,7 @@ fn order(
         && open.is_none()
     {
         let message = format!(
-            "the limit {limit} of the first term `{}` of {what} is the low end of the range, which leaves no room for the term",
+            "the limit {limit} of the first term `{}` of {what} is not above the minimum of the range, which leaves no room for the term",
             entry.key
         );
         error("wrong-parameter", entry.value.span.clone(), message);

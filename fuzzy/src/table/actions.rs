@@ -95,7 +95,7 @@ pub(super) struct FiringStrengths<'m, const L: usize> {
 }
 
 impl<'m, const L: usize> FiringStrengths<'m, L> {
-    /// Starts before any rule has fired; all firing strengths are 0.
+    /// Creates the state before any rule has fired. All firing strengths must be 0.
     #[inline(always)]
     pub(super) fn new(
         least: f64,
@@ -111,7 +111,7 @@ impl<'m, const L: usize> FiringStrengths<'m, L> {
         }
     }
 
-    /// Finishes after all rules have fired.
+    /// Merges `one` into the strongest rule of the only output, after all rules have fired.
     #[inline(always)]
     pub(super) fn end(self) {
         if let [strongest] = self.strongest {

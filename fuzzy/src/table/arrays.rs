@@ -44,11 +44,11 @@ macro_rules! table_arrays {
             edges: Edge,
             /// The actions of rules.
             actions: Action,
-            /// The rules that are not plain ANDs.
+            /// The rules that no table or trie contains.
             programs: Program,
             /// The steps of programs.
             steps: AntecedentStep,
-            /// The rule blocks, if they have different operators or activation methods. In that case all rules are
+            /// The rule blocks, if they have activation methods or different operators. In that case all rules are
             /// programs.
             blocks: Block,
             /// The outputs.
@@ -103,7 +103,7 @@ macro_rules! define {
         }
 
         /// Access to single arrays of a table. The engine evaluates through its own vectors; collecting all of them
-        /// into a [`Table`] would copy forty numbers per evaluation.
+        /// into a [`Table`] would copy the pointer and the length of each array in every evaluation.
         pub(crate) trait Arrays {
             fn and(&self) -> Conjunction;
             fn or(&self) -> Disjunction;

@@ -39,7 +39,7 @@ impl Method {
     const HIGHEST: Method = Method(3);
     const LOWEST: Method = Method(4);
     const PROPORTIONAL: Method = Method(5);
-    /// The code of a threshold is 6 plus the index of its comparison in this list.
+    /// The code of a threshold is 6 plus the index of its comparison in `COMPARISONS`.
     const THRESHOLD: u32 = 6;
     const COMPARISONS: [Comparison; 6] = [
         Comparison::Below,

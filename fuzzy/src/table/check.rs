@@ -5,7 +5,7 @@ use super::{
     Table, TypeReduction,
 };
 
-/// The error for a damaged table or plan: the name of the array with an index out of bounds.
+/// The error for damaged exported data: the name of the array with an index out of bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DamagedArray(pub &'static str);
 

@@ -311,8 +311,8 @@ impl Output {
     }
 
     /// Returns the value of a Takagi-Sugeno output; NaN if `total`, the sum of the weights, is 0 because no rule fired,
-    /// or if the value is not finite. It is clamped to the range only if the author requests it, because the author
-    /// chose the consequents.
+    /// or if the value is not finite. It is clamped to the range only if the output has `clamp`, because consequents
+    /// outside the range may be intended.
     #[inline(always)]
     pub(crate) fn weighted(&self, value: f64, total: f64) -> f64 {
         let is_value = (total > 0.0) & (fabs(value) < f64::INFINITY);
@@ -336,7 +336,7 @@ pub(crate) fn value_in_row<A: Arrays>(
     }
 }
 
-/// Implements [`value_in_row`] for an output with a closed form; not inlined into its callers.
+/// Implements [`value_in_row`] for an output with a closed form.
 fn closed_in_row<A: Arrays>(table: &A, output: &Output, strengths: &[f64]) -> Option<f64> {
     match output.form() {
         ClosedForm::Cut | ClosedForm::Scaled => super::set::value(table, output, strengths),

@@ -1,4 +1,4 @@
-//! Firing of all rules: plain ANDs are found by a table or a trie; all other rules are programs.
+//! Firing of all rules: those that a table or a trie finds, and those that are programs.
 
 use core::ops::DerefMut;
 
@@ -51,7 +51,7 @@ where
     firing.end();
 }
 
-/// Prepares the memory for a row in which no rule has fired yet.
+/// Clears the firing strengths and the strongest rules, and splits the memory.
 #[inline(always)]
 fn ready<'m, A, N, P, S, const L: usize>(
     table: &A,

@@ -58,7 +58,7 @@ pub struct Knot {
     pub moment: f64,
 }
 
-/// The units of areas and moments over the range of an output.
+/// The origin of moments and the unit of length of areas, for the range of an output.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Measure {
     /// The middle of the range, to which moments are relative.
@@ -170,8 +170,8 @@ impl Flank {
         larger(self.from, smaller(x, self.to))
     }
 
-    /// Returns the value at which the flank is cut off at a firing strength: the summit if it is nowhere higher, the
-    /// foot if it is everywhere higher.
+    /// Returns the value at which the flank is cut off at a firing strength: the summit if the flank is nowhere higher,
+    /// the foot if the flank is higher everywhere.
     pub(crate) fn clip(&self, strength: f64) -> f64 {
         let ((foot, low), (summit, high)) = (self.foot(), self.summit());
         match (high <= strength, low < strength) {
@@ -219,7 +219,7 @@ impl Flank {
         self.height * (sd / measure.unit) * HALF * erfc(z)
     }
 
-    /// Returns the area and moment of the flank cut off at a firing strength that is at or above its foot.
+    /// Returns the area and moment of the flank cut off at a firing strength.
     pub(crate) fn clipped(&self, knots: &[Knot], measure: Measure, strength: f64) -> (f64, f64) {
         let (summit, high) = self.summit();
         if high <= strength {

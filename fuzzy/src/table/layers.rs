@@ -102,8 +102,8 @@ impl LayeredSet {
         &table.layers()[self.first_layer as usize..self.end_layer as usize]
     }
 
-    /// Returns the area and moment of a term that alone has a firing strength of 1 while no other term fires.
-    /// `strength` is the index of its firing strength.
+    /// Returns the area and moment of a term at a firing strength of 1 while no other term fires. `strength` is the
+    /// index of its firing strength.
     pub(super) fn of_single_term<A: Arrays>(&self, table: &A, strength: u32) -> (f64, f64) {
         let layers = self.layers(table).iter();
         let parts = layers.filter(|four| four.strength == strength);

@@ -36,7 +36,7 @@
 //! assert_eq!(table.pairs[0].area, [[5.0, 10.0], [-2.5, -5.0]]);
 //! assert_eq!(table.pairs[0].width, [5.0, 5.0]);
 //!
-//! // A heat of 8 is `high` to 0.6, so `fast` is cut at 0.6: the area is 2.1, the moment about the middle 6.6.
+//! // A heat of 8 has the degree 0.6 in `high`, so `fast` is cut at 0.6: its area is 2.1, its moment about the middle 6.6.
 //! assert_eq!(engine.evaluate(&[8.0])?[0].value(), Some(5.0 + 6.6 / 2.1));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -215,7 +215,7 @@ impl Output {
         ClosedForm::from_code(self.form)
     }
 
-    /// Returns the value, clamped to the range if the author requests it.
+    /// Returns the value, clamped to the range if [`Output::clamps`] is set.
     #[inline(always)]
     fn clamped(&self, value: f64) -> f64 {
         match self.clamps {
@@ -244,8 +244,8 @@ impl Table<'_> {
         count
     }
 
-    /// Evaluates one value per input into the [outcomes](Table::outcomes), one per output. It does not allocate. It does not panic if
-    /// [`Table::check`] succeeds and the scratch memory has the sizes of the table.
+    /// Evaluates one value per input into the [outcomes](Table::outcomes), one per output. It does not allocate. It does
+    /// not panic if [`Table::check`] succeeds and the scratch memory has the sizes of the table.
     ///
     /// A value outside the range of its input is clamped to it; the outcome reports that. If a value is NaN or
     /// infinite, every outcome is [`State::InputNotFinite`].
@@ -386,13 +386,12 @@ pub(crate) fn clamp<A: Arrays, const L: usize>(
         infinite: [0; L],
     };
     for ((input, inside), values) in table.inputs().iter().zip(values).zip(inputs) {
-        // The loop above flags any value that is not finite as clamped. Clamping is rare, so this check is usually
-        // skipped.
         let nearest = each(|row| larger(smaller(values[row], input.high), input.low));
         for row in 0..L {
             input_flags.clamped[row] |= u64::from(nearest[row] != values[row]);
         }
-        // A value that is not finite is clamped above, and clamping is rare, so this check is usually skipped.
+        // The loop above flags every value that is not finite as clamped. Clamping is rare, so this check is usually
+        // skipped.
         if input_flags.clamped.iter().fold(0, |any, one| any | one) != 0 {
             for (infinite, value) in input_flags.infinite.iter_mut().zip(&values) {
                 *infinite |= u64::from(!value.is_finite());

@@ -9,9 +9,10 @@
 //! F(c) = sum of w_upper (c - x) over x < c  +  sum of w_lower (c - x) over x > c
 //! ```
 //!
-//! F is a convex polygon that never decreases, so Newton's method approaches the root from one side and ends after
-//! finitely many steps. The right end is found in the same way, with left and right exchanged. If all lower bounds
-//! are 0, the average can be any of the numbers. The search serves fuzzy sets too: `set/between.rs` and, without a closed form, `defuzzify/reduction.rs`.
+//! F is convex, piecewise linear and never decreases, so Newton's method approaches the root from one side and ends
+//! after finitely many steps. The right end is found in the same way, with left and right exchanged. If all lower bounds
+//! are 0, the interval extends from the smallest to the largest number. The same search is used for fuzzy sets, in
+//! `set/between.rs` and, without a closed form, in `defuzzify/reduction.rs`.
 //!
 //! For fuzzy sets with a closed form, the type reductions that give a single value are computed from the areas and
 //! centroids of the lower and the upper set. The methods that give an interval need prepared sets.
@@ -68,8 +69,8 @@ pub(crate) enum IntervalEnd {
 }
 
 impl IntervalEnd {
-    /// Returns where the set of the search equals the upper set, and where it equals the lower set: one on each side
-    /// of `x`.
+    /// Returns the intervals, one on each side of `x`, on which the set in [`search`] equals the upper set and the lower
+    /// set.
     pub(crate) fn parts(self, x: f64) -> ((f64, f64), (f64, f64)) {
         let (below, above) = ((f64::NEG_INFINITY, x), (x, f64::INFINITY));
         match self {
@@ -232,7 +233,7 @@ pub(crate) fn sum(points: impl Iterator<Item = WeightedNumber>) -> Option<(f64, 
     (!is_empty).then_some((low, high))
 }
 
-/// Searches for both ends of the interval; `sums` is that of [`search`] for the given end.
+/// Searches for both ends of the interval. `sums` returns the same as the `sums` of [`search`], for the given end.
 pub(crate) fn both_ends(
     start: f64,
     range: (f64, f64),

@@ -93,10 +93,10 @@ pub struct Edge {
     pub node: u32,
 }
 
-/// A rule whose antecedent is not a plain AND, whose conclusion has hedges, or that belongs to a
-/// [`Block`](super::Block). The strength that its actions use is the degree of its antecedent times `weight`, adjusted
-/// by the activation method and then by the hedges. In a block with an activation method, a program without steps
-/// continues the previous rule.
+/// A rule that no table or trie contains: its antecedent is not a plain AND, its conclusion has hedges, it belongs to a
+/// [`Block`](super::Block), or the rule set is small. The strength that its actions use is the degree of its antecedent
+/// times `weight`, adjusted by the activation method and then by the hedges. In a block with an activation method, a
+/// program without steps continues the previous rule.
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]

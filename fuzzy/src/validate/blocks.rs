@@ -29,7 +29,7 @@ impl Validator<'_> {
                     percent / 100.0
                 ),
                 small if small < MIN_STRENGTH => format!(
-                    "remove `least_strength`: the default {MIN_STRENGTH:e} excludes only strengths from rounding errors"
+                    "remove `least_strength`: the default {MIN_STRENGTH:e} excludes only firing strengths that are rounding errors"
                 ),
                 _ => "write a number from 0 to 1".into(),
             };

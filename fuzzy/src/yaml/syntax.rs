@@ -250,11 +250,11 @@ fn message(text: &str, at: usize, kind: &ErrorKind) -> (String, &'static str) {
         ),
         ErrorKind::ExpectedBlockSequenceEntry => match content.ends_with(':') {
             true => (
-                "this name has no `-` before it, but the name above does",
+                "this name has no `-` before it, but the name above has one",
                 "remove the `-` before the name above, and indent the keys under each name: inputs, outputs and blocks have no `-`",
             ),
             false => (
-                "this entry has no `-` before it, but the entry above does",
+                "this entry has no `-` before it, but the entry above has one",
                 "begin each entry of a list with `-`",
             ),
         },

@@ -60,7 +60,7 @@ impl<'a> Line<'a> {
         if let Some(value) = value.filter(|value| is_choice && self.has(&format!("--{value}"))) {
             return Some(format!("write `--{value}`"));
         }
-        // A file that exists is an input: advice must not lead to its replacement.
+        // An existing file is probably an input, so the advice must not name an option that would replace it.
         let new_file = value.filter(|value| !Path::new(value).exists());
         let mut renamed = RENAMED.iter().filter(|(others, here)| {
             has_word(others, option)
@@ -136,7 +136,7 @@ impl<'a> Line<'a> {
         }
     }
 
-    /// Advice for a word that is neither an option nor an argument that the command still accepts.
+    /// Advice for a word that is not an option, and that the command does not accept as a further argument.
     pub(super) fn argument(&self, word: &str) -> Option<String> {
         let name = self.command.get_name();
         let positionals = self.positionals();
@@ -251,7 +251,7 @@ impl<'a> Line<'a> {
         found
     }
 
-    /// Advice for an option whose value is the file that is missing, as in `--rising fan.yaml` and `--profile 7.BIN`.
+    /// Advice for an option that took the missing file as its value, as in `--rising fan.yaml` and `--profile 7.BIN`.
     pub(super) fn taken_file(&self) -> Option<String> {
         let pair = self.words.windows(2).find(|pair| match pair {
             [option, value] => {

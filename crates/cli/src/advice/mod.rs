@@ -122,7 +122,8 @@ fn advice(error: &clap::Error, program: &Command, words: &[String]) -> Option<St
             match words.first().map(String::as_str) {
                 Some("show") if is_file => {
                     return Some(
-                        "`show` prints what is built in; open a file in an editor".to_owned(),
+                        "`show` prints built-in profiles and rule sets; open a file in an editor"
+                            .to_owned(),
                     );
                 }
                 Some("schema") if is_file => {

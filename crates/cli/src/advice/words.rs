@@ -81,7 +81,7 @@ pub(super) const COMMANDS: &[(&str, &str)] = &[
     ),
     (
         "evalute evaluation",
-        "`flagred eval` evaluates a rule set, `flagred validate` profiles",
+        "`flagred eval` evaluates a rule set, `flagred validate` validates profiles",
     ),
 ];
 
@@ -226,7 +226,7 @@ pub(super) const OPTIONS: &[(&str, &str, &str)] = &[
     (
         "assess watch validate inspect",
         "--rules --ruleset --model",
-        "a profile names the rule set: `flagred new NAME --profile flagred` writes a profile; assess by `--profile NAME.yaml`",
+        "a profile names the rule set: `flagred new NAME --profile flagred` writes a profile; assess with `--profile NAME.yaml`",
     ),
     (
         "identify",
@@ -236,7 +236,7 @@ pub(super) const OPTIONS: &[(&str, &str, &str)] = &[
     (
         "assess watch",
         "--threshold --warn --fail --limit",
-        "thresholds belong to a profile: `flagred new NAME --profile flagred` writes one to edit; assess by `--profile NAME.yaml`",
+        "thresholds belong to a profile: `flagred new NAME --profile flagred` writes one to edit; assess with `--profile NAME.yaml`",
     ),
     (
         "new",

@@ -86,7 +86,7 @@ impl Sarif {
     }
 }
 
-/// A line `::error file=..,line=..::..` for each finding.
+/// Writes a line `::error file=..,line=..::..` for each finding.
 pub(super) fn write_github(
     out: &mut impl Write,
     findings: &[Diagnostic],

@@ -80,7 +80,7 @@ pub(super) fn rows(log: &str, plan: &Plan) -> Result<FileRows, Failure> {
     }
     if made.rows.is_empty() {
         made.notes.push(
-            "no rows: the time in the air is too short, or its values are unknown".to_owned(),
+            "no rows: the time in the air is too short, or an input or the attitude is unknown throughout".to_owned(),
         );
     } else if refused > 0 {
         made.notes.push(format!(

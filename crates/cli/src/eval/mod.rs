@@ -61,7 +61,7 @@ pub(crate) struct Arguments {
 enum ExplanationColumn {
     /// The coverage: the largest firing strength of any rule, from 0 to 1
     Coverage,
-    /// The number of the rule with that strength, from 1
+    /// The number of the rule with the largest firing strength, counted from 1
     Rule,
     /// The inputs that are outside their range and were clamped
     Clamped,
@@ -244,7 +244,7 @@ impl Plan {
         if let Some(name) = added.iter().find(|name| self.header.column(name).is_some()) {
             return Err(
                 Failure::usage(format!("the points have a column `{name}` already"))
-                    .help("`--suffix _model` appends to the names of the outputs' columns, and compares them with measured values"),
+                    .help("`--suffix _model` appends `_model` to the names of the output columns, and compares the outputs with measured values"),
             );
         }
         let names = self.header.names.iter().chain(&added);

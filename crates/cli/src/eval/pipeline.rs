@@ -100,14 +100,14 @@ fn write<W: Write + ?Sized>(
 ) -> io::Result<Result<Tally, Failure>> {
     let mut tally = Tally::new(plan);
     for thread in threads.iter().cycle() {
-        // The first thread without a block has reached the end of the table.
+        // If the next thread has no further block, the table has ended.
         match thread.recv() {
             Err(_) => break,
             Ok(Err(failure)) => return Ok(Err(failure)),
             Ok(Ok((block, of_block))) => {
                 out.write_all(&block.written)?;
                 tally.merge(of_block);
-                // Sending fails only if the table was read to its end; the spare block is then not needed.
+                // Sending fails only if reading has ended; the spare block is then not needed.
                 let _ = spare.send(block);
             }
         }

@@ -306,7 +306,7 @@ impl<'p> Evaluator<'p> {
         writer.write_record(None::<&[u8]>)
     }
 
-    /// Returns the intervals of the outputs; `None` if the inputs are numbers or unknown.
+    /// Returns the intervals of the outputs; `None` if no input is uncertain, or if an input or half-width is unknown.
     fn enclosed(&self, row: usize) -> Option<Vec<IntervalOutcome>> {
         let enclosure = self.enclosure.as_ref()?;
         let at = |values: &Vec<f64>| values.get(row).copied().unwrap_or(f64::NAN);

@@ -38,7 +38,7 @@ impl RowCount {
     }
 }
 
-/// Counts of rows.
+/// Counts of rows by their problems, and the errors of the outputs.
 pub(super) struct Tally {
     pub(super) rows: u64,
     bad: RowCount,

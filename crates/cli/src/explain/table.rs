@@ -88,7 +88,7 @@ fn added(engine: &Engine, header: &Header, suffix: &str) -> Result<Vec<String>, 
             "`{}` has a column `{name}` already",
             header.file
         ))
-        .help("`--suffix _model` appends to the names of the outputs' columns")),
+        .help("`--suffix _model` appends `_model` to the names of the output columns")),
     }
 }
 

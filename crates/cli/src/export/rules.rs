@@ -79,10 +79,10 @@ pub(super) fn code(
             c::rules(&rules, &model.name, &heading)
         }
         Language::Lua => {
-            return Err(
-                Failure::usage("a script for ArduPilot is written from a profile")
-                    .help("export a profile as Lua, or the rule set as Rust or C"),
-            );
+            return Err(Failure::usage(
+                "a script for ArduPilot needs a profile, but this is a rule set",
+            )
+            .help("export a profile as Lua, or the rule set as Rust or C"));
         }
     };
     Ok((text, warnings))

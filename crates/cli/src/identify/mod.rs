@@ -149,7 +149,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         has_numbers(arguments, first)?;
     }
     if let ([], [word, ..]) = (names.as_slice(), without_numbers.as_slice()) {
-        let message = format!("no column beside `{}` contains numbers", arguments.target);
+        let message = format!("no column except `{}` contains numbers", arguments.target);
         let help =
             format!("inputs are numbers, and `{word}` contains text: add columns with numbers");
         return Err(Failure::unreadable(message).help(help));
@@ -244,7 +244,9 @@ fn columns(arguments: &Arguments, table: &Table) -> Result<(Vec<String>, Vec<Str
         return Ok((arguments.input.clone(), Vec::new()));
     }
     for ignored in &arguments.ignore {
-        table.header.require(ignored, "leave that option out")?;
+        table
+            .header
+            .require(ignored, "correct `--ignore`, or leave it out")?;
     }
     let special = [
         Some(&arguments.target),

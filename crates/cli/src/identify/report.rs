@@ -81,7 +81,7 @@ pub(super) fn words(
     }
     let missing = match identified.without_rows {
         0 => String::new(),
-        1 => "; none for 1 combination of terms without rows".to_owned(),
+        1 => "; 1 combination of terms without rows has no rule".to_owned(),
         count => format!("; {count} combinations of terms without rows have no rule"),
     };
     let inputs = identified.columns.len();

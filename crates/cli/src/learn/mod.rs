@@ -63,7 +63,7 @@ enum Resolve {
     Strongest,
     /// The consequent with the highest sum of degrees wins; the confidence is its share of the sum
     Heaviest,
-    /// The mean of the rows decides
+    /// The consequent that fits the mean of the rows best wins; the confidence is its share of the sum of degrees
     Mean,
 }
 
@@ -212,7 +212,7 @@ fn monotone_help(outcome: &LearnOutcome) -> Option<&'static str> {
     let holds = counterexamples(&outcome.claims, &model).is_ok_and(|found| found.is_empty());
     match (holds, outcome.learned.missing) {
         (true, _) => Some(
-            "the same rules satisfy it with `operators: {and: product, implication: product, aggregation: sum}`",
+            "the output of these rules is monotone with `operators: {and: product, implication: product, aggregation: sum}`",
         ),
         (false, 0) => None,
         (false, _) => Some(

@@ -36,9 +36,9 @@ pub(super) fn against(
     let columns = arguments.layout.columns(&names, header);
     let columns = columns.map_err(|failure| match header.names.len() {
         // A table to compare with has a column for at least one input and one output.
-        1 if header.other_delimiter().is_none() => {
-            failure.help("`map --csv` writes such a table; that of `map --values` is for people")
-        }
+        1 if header.other_delimiter().is_none() => failure.help(
+            "`map --csv` writes such a table; the tables of `map --values` cannot be compared",
+        ),
         _ => failure,
     })?;
     let suffix = &arguments.suffix.suffix;

@@ -39,8 +39,8 @@ pub(crate) struct Arguments {
     #[arg(value_name = "RULES")]
     model: PathBuf,
 
-    /// Points along each axis [default: 51; with `--csv` and more than two inputs fewer, so that there are at most 100,000 in all;
-    /// with `--values`, the table has at most 6 columns and rows]
+    /// Points along each axis [default: 51; fewer with `--csv` and more than two inputs, so that there are at most 100,000 in
+    /// all; with `--values`, the table has at most 6 columns and rows]
     #[arg(long, value_name = "POINTS", value_parser = whole(2_u16, 1001))]
     points: Option<u16>,
 

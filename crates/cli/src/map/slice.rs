@@ -81,7 +81,7 @@ pub(super) fn axes(arguments: &Arguments, evaluated: &MapSource) -> Result<Axes,
         .ok_or_else(|| {
             let values = arguments.hold.iter().map(|(name, value)| format!(" {name}={value}"));
             let values: String = values.collect();
-            let failure = Failure::usage("every input is fixed, none is left for an axis");
+            let failure = Failure::usage("every input is fixed, so none is left for an axis");
             failure.help(format!(
                 "leave out one `--hold`; `flagred explain RULES{values}` evaluates the output at this point"
             ))

@@ -8,7 +8,7 @@ use crate::{failure::Failure, output};
 
 /// Maximum number of columns and rows of a table without `--points`.
 const SHOWN: usize = 6;
-/// Maximum number of slices: nobody would read more.
+/// Maximum number of slices; more would be too long to read.
 const MAX_SLICES: usize = 100;
 
 /// Returns the picture and the values of a map of one or two inputs. With more inputs, it returns the values of a slice at every

@@ -45,10 +45,10 @@ enum Destination {
 /// Identifies a file, whatever path leads to it.
 #[derive(Debug, PartialEq, Eq)]
 enum Identity {
-    /// Device and inode; on other systems than Unix, the full path.
+    /// Device and inode.
     #[cfg(unix)]
     Node(u64, u64),
-    /// A file that does not exist yet, with symbolic links resolved.
+    /// The full path, with symbolic links resolved: for a file that does not exist yet, and for all files except on Unix.
     Path(PathBuf),
 }
 

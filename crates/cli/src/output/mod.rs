@@ -118,7 +118,7 @@ pub(crate) fn is_terminal(output: Option<&Output>) -> bool {
 
 /// Prints a note on standard error, on one line.
 pub(crate) fn print_note(note: &str) {
-    // If standard error is closed, there is no other way to report that.
+    // A write fails if standard error is closed. That cannot be reported elsewhere.
     let _ = writeln!(anstream::stderr(), "{}", visible(note));
 }
 

@@ -19,7 +19,7 @@ use crate::{
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The format
+    /// The format whose schema is printed
     format: Format,
 }
 

@@ -99,7 +99,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if let Some(line) = file_line {
         writeln!(out, "{}", visible(&line))?;
     }
-    writeln!(out, "Ctrl-C ends it")?;
+    writeln!(out, "Ctrl-C stops the server")?;
     out.finish()?;
     let serving = Arc::clone(&server);
     thread::spawn(move || accept(&listener, &serving));

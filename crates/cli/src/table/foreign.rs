@@ -35,7 +35,7 @@ pub(super) fn not_a_table(start: &[u8], file: &str) -> Option<Failure> {
     match start.trim_ascii_start().first() {
         Some(b'[' | b'{') => is(
             "JSON",
-            "write a row for each object, below the names of the columns, separated by commas",
+            "write the names of the columns in the first line, then a line for each object, with commas between the cells",
         ),
         _ => None,
     }

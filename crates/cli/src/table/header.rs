@@ -25,8 +25,8 @@ impl Header {
         self.require_with(name, help, |meant| format!("did you mean `{meant}`?"))
     }
 
-    /// Returns the index of a required column. If it is missing, `help` is added to the message, or `for_case` of a column
-    /// that differs from the name only in upper and lower case.
+    /// Returns the index of a required column. If it is missing and no other advice applies, `help` is added to the message.
+    /// `for_case` returns the advice if a column differs from the name only in upper and lower case.
     pub(super) fn require_with(
         &self,
         name: &str,

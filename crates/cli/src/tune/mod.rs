@@ -310,7 +310,7 @@ fn warning(outcome: &TuneOutcome) -> Option<String> {
         .filter(|it| it.after.value > it.before.value);
     let why = match worse {
         Some(it) => format!(
-            "the error on rows left out rises from {:.3} to {:.3}",
+            "the cross-validation error rises from {:.3} to {:.3}",
             it.before.value, it.after.value
         ),
         None if rows < moved => few,

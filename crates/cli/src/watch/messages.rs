@@ -133,8 +133,9 @@ pub(crate) fn status(level: Level, text: &str) -> MavMessage {
 
 /// Returns the text of a change of level with its cause, in at most 50 characters: `FLAGRED: WARN risk 78 %, fighting
 /// gusts`; if motors are near a limit, `FLAGRED: WARN risk 78 %, upper limit, motor 3`; or `FLAGRED: WARN motor 3
-/// weak: +24 %`. `finding` is the finding with its texts. If it is `None` although the level is above GOOD, the text
-/// states that the level stays: the motors have changed since the alarm was raised.
+/// weak: +24 %`. `finding` is the finding with its texts. If it is `None` although the level is above GOOD, nothing raises
+/// the risk any more, but the balance of the motors differs from that before the alarm. The text then states that the
+/// level stays.
 pub(crate) fn level_text(
     level: Level,
     update: &Update,

@@ -91,7 +91,7 @@ pub(crate) struct Arguments {
     #[arg(long, conflicts_with = "no_send")]
     send_anyway: bool,
 
-    /// End at once if the endpoint does not open, instead of trying it every second
+    /// End at once if the endpoint does not open, instead of trying again every second
     #[arg(long)]
     no_wait: bool,
 

@@ -344,7 +344,7 @@ fn serve(
         waiting.retain(|next| !matches!(peek(&next.stream), Ok(0)));
         let is_sending = |next: &Client| matches!(peek(&next.stream), Ok(1..));
         let Some(index) = waiting.iter().position(is_sending) else {
-            // If all waiting connections are silent, the oldest is dropped to make room for another one.
+            // If all are silent and there is no room for another connection, the oldest is dropped.
             if waiting.len() == MAX_WAITING {
                 waiting.remove(0);
             }

@@ -40,7 +40,7 @@ const RISK_S: f64 = 0.25;
 const CONFIRMATION_WAIT_S: f64 = 5.0;
 /// A vehicle that is silent for this long is replaced by a vehicle with another system id.
 const GONE_S: f64 = 30.0;
-/// Maximum number of other systems that are remembered: MAVLink has no more.
+/// Maximum number of other systems that are remembered: MAVLink has no more than 256 system ids.
 const SYSTEMS: usize = 256;
 
 /// The output of a session.
@@ -277,7 +277,7 @@ impl<'e> Session<'e> {
         }
     }
 
-    /// Considers the sender of a packet as the vehicle to follow, and returns whether it is.
+    /// Decides whether to follow the sender of a packet from now on, and returns the decision.
     fn consider(
         &mut self,
         now_s: f64,

@@ -219,7 +219,7 @@ const MISTAKES: &[(&str, i32, &str)] = &[
     (
         "identify cities.csv --target fan -o out.yaml",
         3,
-        "no column beside `fan` contains numbers
+        "no column except `fan` contains numbers
   help: inputs are numbers, and `city` contains text",
     ),
     (

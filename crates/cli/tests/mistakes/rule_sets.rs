@@ -132,7 +132,11 @@ const MISTAKES: &[(&str, i32, &str)] = &[
     ("check profile", 3, "did you mean `profile.yaml`?"),
     ("check notes.md", 3, "is a document, not a rule set"),
     ("check rows.csv", 1, "a table of values, not a rule set"),
-    ("show fan.yaml", 2, "`show` prints what is built in"),
+    (
+        "show fan.yaml",
+        2,
+        "`show` prints built-in profiles and rule sets",
+    ),
     ("check --csv fan.yaml", 2, "write `--json`"),
     ("map fan.yaml --csv out.csv", 2, "write `--output out.csv`"),
     (

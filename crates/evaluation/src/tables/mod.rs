@@ -220,7 +220,7 @@ fn by(
             let area = scores.and_then(|scores| scores.areas);
             area.map_or("-".to_owned(), |area| format!("{:.3}", area.roc))
         }));
-        // The reason is the same for all estimators, because it depends only on the flights.
+        // This is the reason for the first estimator. It depends on the flights, so it is usually the same for all.
         let none = scores.no_area(evaluation.cases);
         cells.extend(none.filter(|_| scores.cases > 0));
         cells

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// A sample: seconds since the previous one, whether it is in the air, and the motors.
+/// A sample: the seconds since the previous sample, whether the vehicle is in the air, and the commands of the motors.
 type SampleCase = (f64, Option<bool>, [f64; 4]);
 
 /// Calm, violent and idle phases, with gaps, unknown motors and clocks that go back.

@@ -110,7 +110,7 @@ fn no_inputs_within_their_intervals_have_a_risk_outside() {
                     .map(|(within, variable)| {
                         let (least, most) = variable.map_or((0.0, 1.0), |it| (it.low, it.high));
                         let (low, high) = (within.low.max(least), within.high.min(most));
-                        // The ends are chosen often.
+                        // Because `share` is clamped, the ends of the interval are chosen often.
                         let share = (0.5 + 0.7 * random()).clamp(0.0, 1.0);
                         low + (high - low).max(0.0) * share
                     })

@@ -8,7 +8,7 @@ use super::{ActivatedTerm, ConsequentOperators, Curves, Run, Strengths, Workspac
 use crate::model::{Aggregation, Implication};
 use crate::table::{MIN_STRENGTH, numeric::root};
 
-/// The cuts of one evaluation.
+/// The cuts of one interval.
 struct Cuts<'a> {
     cuts: &'a mut Vec<f64>,
     most: usize,

@@ -14,7 +14,8 @@ pub(super) struct FlankPair<'f> {
     pub(super) to: f64,
 }
 
-/// The number of points at which two flanks with the same direction are compared, in addition to their cuts.
+/// The number of evenly spaced steps at whose ends two flanks with the same direction are compared, in addition to their
+/// cuts.
 const COMPARED: usize = 24;
 
 impl<'f> FlankPair<'f> {

@@ -177,7 +177,7 @@ pub(super) fn knots(flank: &Flank, cuts: &[f64], measure: Measure) -> Option<Vec
     Some(fewer(knots, |a, b| integral(a, b).0))
 }
 
-/// Removes knots that are not needed.
+/// Removes the knots without which the quadrature is equally accurate.
 fn fewer(knots: Vec<Knot>, area: impl Fn(f64, f64) -> f64) -> Vec<Knot> {
     let mut kept: Vec<Knot> = Vec::new();
     let mut last: Option<Knot> = None;

@@ -32,7 +32,7 @@ impl Span {
         (self.low == self.high).then_some(self.low)
     }
 
-    /// Returns the range of numbers, of which some may be NaN.
+    /// Returns the span of some numbers; [`Span::ALL`] if one of them is NaN.
     fn of(numbers: &[f64], may_be_undefined: bool) -> Span {
         if numbers.iter().any(|number| number.is_nan()) {
             return Span::ALL;
@@ -138,7 +138,8 @@ fn of_two(word: &str, x: Span, y: Span) -> Span {
     }
 }
 
-/// Returns the powers of a base with a whole exponent, or of a base that is not negative.
+/// Returns the span of the powers for a positive whole exponent, a positive base, or a base of at least 0 with a positive
+/// exponent; otherwise [`Span::ALL`].
 fn power(x: Span, y: Span, may_be_undefined: bool) -> Span {
     let corners = |low: f64, high: f64| {
         let of = |x: f64| [libm::pow(x, y.low), libm::pow(x, y.high)];

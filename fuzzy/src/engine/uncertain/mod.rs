@@ -232,7 +232,7 @@ impl Engine {
     /// # Errors
     /// Fails like [`Engine::evaluate`], and if an end of an interval is not finite or the ends are in the wrong order.
     ///
-    /// # Example: a temperature that is known up to 2 degrees
+    /// # Example: a temperature that is known to within 2 degrees
     /// ```
     /// use fuzzy::{Engine, Model, engine::Interval};
     ///

@@ -141,9 +141,9 @@ impl RangedStage {
         &self.outputs
     }
 
-    /// Adds the corners of the terms that the rules of an output read, and returns an upper bound of the total strength
-    /// that is rounded to 0, divided by the least weight of a rule. `None` unless the firing strengths are linear along
-    /// each input between corners, and the strengths of a term are summed.
+    /// Adds the corners of the terms that the rules of an output read. Returns an upper bound of the total of the firing
+    /// strengths that count as 0 although they are not, divided by the least weight of a rule. `None` unless the firing
+    /// strengths are linear along each input between corners, and the strengths of a term are summed.
     pub(super) fn linear(&self, output: usize, corners: &mut [Vec<f64>]) -> Option<f64> {
         let output = self.own.get(output)?;
         let strengths = output.first..output.first + output.offsets.last()?;

@@ -34,7 +34,7 @@ pub(in super::super) struct Plane {
     pub(super) form: ClosedForm,
 }
 
-/// An input.
+/// The range of an input, and the limits between its intervals.
 #[derive(Debug, Clone)]
 pub(super) struct PlaneInput {
     pub(super) low: f64,

@@ -140,7 +140,7 @@ impl Uniform {
             vectors *= 2;
         }
         let mut top = splat(simd, 0.0);
-        // Adjacent cells often act on the same strength; separate banks avoid waiting for the previous addition.
+        // Adjacent cells often act on the same strength; with separate banks, no update waits for the previous one.
         let mut banks = [[0.0; MAX_STRENGTHS]; 4];
         for (i, degrees) in visited.iter_mut().enumerate().take(vectors) {
             let cell = |of: usize| self.cells.get(cells[4 * i + of] as usize);

@@ -26,7 +26,7 @@ impl SetArrays<'_> {
                 before += area;
                 continue;
             }
-            // The unvisited part of the section has two ends: the area of the set to the left of each of them.
+            // The areas of the set to the left of the lower and of the upper end of the unvisited part of the section.
             let (mut left, mut right) = (before, before + area);
             let mut value = None;
             self.parts(section, strengths, |part| {
@@ -44,7 +44,7 @@ impl SetArrays<'_> {
                     right -= part.area;
                 }
             });
-            // Because of rounding, it may happen that no part contains the value, because it is between two parts.
+            // Because of rounding, the value may be between two parts, so that no part contains it.
             return value.or(Some(section.to));
         }
         self.sections.last().map(|section| section.to)

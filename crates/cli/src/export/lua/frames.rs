@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 
 use flagred_flightlog::{Frame, ardupilot_frames};
 
-/// `1/1 QUAD/X 1: -1 1 1 2: 1 -1 1 ...`: class and type, name, and the number, roll, pitch and yaw of each motor.
+/// Returns a line for each frame, such as `1/1 QUAD/X 1: -1 1 1 2: 1 -1 1 ...`: class and type, name, and the number, roll,
+/// pitch and yaw of each motor.
 pub(super) fn lines() -> Vec<String> {
     ardupilot_frames().map(|frame| line(&frame)).collect()
 }
 
-/// `local MOTORS_OF = {[1] = 4, [2] = 6, ...}`: the number of motors of each class.
+/// Returns `local MOTORS_OF = {[1] = 4, [2] = 6, ...}`: the number of motors of each class.
 pub(super) fn motors_of_class() -> String {
     let classes: BTreeMap<i64, usize> = ardupilot_frames()
         .map(|frame| (frame.class, frame.motors.len()))

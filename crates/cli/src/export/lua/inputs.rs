@@ -179,7 +179,7 @@ pub(super) fn fill(
     Ok(())
 }
 
-/// Divides a value by the denominator of its ratio.
+/// Returns the code that divides a value by the denominator of its ratio.
 fn quotient(value: &str, ratio: &Ratio) -> String {
     let (per, least) = (format!("value[{}]", ratio.per + 1), number(ratio.at_least));
     format!("  {value} = {value} and {per} and {value} / max({per}, {least})")

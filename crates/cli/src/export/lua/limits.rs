@@ -70,7 +70,7 @@ impl Size {
                 format!(
                     "the script would have {locals} local variables in a function, but ArduPilot's Lua allows {LOCALS}"
                 ),
-                "use fewer inputs with different signals",
+                "use fewer inputs, or inputs with the same signal",
             );
         }
         if *conditions > CONDITIONS {

@@ -54,8 +54,8 @@ const SCRIPT: [(&str, &str); 13] = [
     ("SLOTS", "128"),
     // The maximum time of a counter: `later` does not increase a time that has reached it.
     ("LONG_US", "1000000000"),
-    // Bytes of a test string. Creating it takes twice as much memory, which must be free for the temporary values of
-    // calls.
+    // The length of a test string in bytes. Creating it takes twice as many bytes. If that succeeds, enough memory is
+    // free for the temporary values of calls.
     ("RESERVE_BYTES", "3000"),
     // Severities of MAVLink.
     ("CRITICAL", "2"),

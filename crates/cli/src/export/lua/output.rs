@@ -55,14 +55,15 @@ impl Coefficients {
                 format!(
                     "output `{name}` is a Takagi-Sugeno output, which the script does not support"
                 ),
-                "the script supports the centroid, with `implication: product` and `aggregation: sum` or over a `partition` with \
-                 minimum and maximum",
+                "the script supports the centroid, either with `implication: product` and `aggregation: sum`, or of a `partition` \
+                 with `implication: minimum` and `aggregation: maximum`",
             )),
             _ => Err(UnsupportedFeature::new(
                 format!(
                     "the script does not support the implication, aggregation or defuzzifier of output `{name}`"
                 ),
-                "choose `implication: product` and `aggregation: sum`, or a `partition` with minimum and maximum, and the centroid",
+                "choose the centroid, either with `implication: product` and `aggregation: sum`, or of a `partition` with \
+                 `implication: minimum` and `aggregation: maximum`",
             )),
         }
     }

@@ -20,7 +20,7 @@ use super::{
     template::TemplateValues,
 };
 
-/// Outputs that are computed in one pass, with their tables.
+/// Outputs that are computed in one pass, with their table.
 struct Stage<'a> {
     table: Table<'a>,
     /// The indices of the outputs in the model.
@@ -232,8 +232,8 @@ fn action_of<'a>(
     })
 }
 
-/// Returns the code that clamps the inputs to their ranges, in the order of the rules. Inputs that the risk does not
-/// depend on may be unknown.
+/// Returns the code that clamps the inputs to their ranges, in the order of the rule set. Inputs that the risk does not
+/// depend on may be unknown, so they are set to the lower end of their range.
 fn point(plan: &Plan<'_>) -> Vec<String> {
     let inputs = plan.rules.table.inputs.iter().zip(plan.order).zip(1..);
     let line = |((input, from), i): ((&flagred::board::table::Input, &u32), u32)| {

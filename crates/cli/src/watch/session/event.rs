@@ -35,7 +35,7 @@ pub(crate) enum Event {
         #[schemars(with = "Option<String>")]
         address: Source,
     },
-    /// The vehicle is no longer followed, in favour of another one.
+    /// The vehicle is no longer followed, because another one is followed instead.
     GivenUp { system: u8 },
     /// After a silence, the vehicle is received from another address.
     SenderChanged {
@@ -135,7 +135,7 @@ pub(crate) enum Event {
     Over { end: End, flown: FlightSummary },
 }
 
-/// A vehicle in an event.
+/// The description of a vehicle in an event.
 #[derive(Serialize, JsonSchema)]
 struct VehicleDescription<'a> {
     /// The kind of vehicle, such as `multirotor`.
@@ -162,7 +162,7 @@ pub(crate) enum End {
     Landed,
     /// The vehicle was in the air when contact was lost.
     Lost(ContactLoss),
-    /// The vehicle is still in the air and is received.
+    /// The vehicle is still in the air and still received, but the flight is no longer followed.
     LeftInAir(StopReason),
 }
 

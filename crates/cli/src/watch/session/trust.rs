@@ -95,8 +95,8 @@ pub(super) enum Evidence {
     Commands,
 }
 
-/// The senders that may be a vehicle. They are collected while no vehicle is followed, or while the
-/// followed vehicle is not yet confirmed.
+/// The senders that may be a vehicle. They are collected while no vehicle is followed, and while the followed vehicle is
+/// silent or not yet confirmed.
 #[derive(Debug, Default)]
 pub(super) struct Candidates(Vec<Candidate>);
 

@@ -206,7 +206,7 @@ impl WatchSender {
             (None, Some(known)) => known.goes_first || packet.component == 1,
             (None, None) => packet.component == 1 || !self.has_reported_risk,
         };
-        // If any other watch has precedence, this one does not send.
+        // A watch without precedence does not replace one with precedence, which still keeps this watch from sending.
         if self.other.as_ref().is_some_and(|other| {
             other.goes_first && !goes_first && other.component != packet.component
         }) {

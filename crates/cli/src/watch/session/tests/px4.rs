@@ -30,11 +30,12 @@ impl Bench<'_> {
         }));
     }
 
-    /// Flies at 25 Hz; `each` receives the packets that were sent since the previous sample.
+    /// Flies at 25 Hz, with pulses near the given ones.
     fn px4_fly(&mut self, from_s: f64, seconds: f64, pulses: [u16; 4]) {
         self.px4_fly_and(from_s, seconds, pulses, |_, _| {});
     }
 
+    /// Like `px4_fly`; after each sample, `each` receives the number of packets that were sent before it.
     fn px4_fly_and(
         &mut self,
         from_s: f64,

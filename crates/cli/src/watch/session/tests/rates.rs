@@ -79,8 +79,8 @@ fn rates_are_requested_until_they_arrive_also_by_the_old_message() {
     assert_eq!(count_requests(&bench), (3, 3));
 }
 
-/// Requests affect all receivers on a link. Therefore a sufficient rate is not requested, because that could reduce
-/// the rate for another receiver.
+/// A request affects all receivers on a link, and could reduce the rate for another one. Therefore no rate is requested
+/// if the current rate is sufficient.
 #[test]
 fn a_rate_that_is_high_enough_is_not_requested() {
     let estimator = estimator();
