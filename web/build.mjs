@@ -26,7 +26,7 @@ const common = {
   ),
 };
 
-/** The policy that limits what the page may load. The page makes its pictures itself. */
+/** The policy that limits what the page may load. It allows `data:` and `blob:` images, which the page creates itself. */
 const policy = (scripts, styles, workers) =>
   [
     "default-src 'none'",
@@ -67,7 +67,7 @@ async function served(template) {
   });
 }
 
-/** Writes all into one file. The policy lists scripts and styles by hash; the worker and the modules are data. */
+/** Writes the whole page as one file. Its policy allows scripts and styles by hash; worker and modules are embedded data. */
 async function oneFile(template) {
   const bundled = async (entry, options) => {
     const { outputFiles } = await build({ ...common, entryPoints: [entry], outdir: page, write: false, ...options });

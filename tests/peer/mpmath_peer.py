@@ -446,7 +446,7 @@ def evaluate(model, point, rounding=mpf(1)):
 
 
 def by_name(part):
-    """Converts lists of named entries, which keep the order of names in formats that sort them, to dictionaries."""
+    """Converts lists of entries with a name to dictionaries. The lists keep the order of entries in formats that sort names."""
     if isinstance(part, dict):
         return {key: by_name(value) for key, value in part.items()}
     if isinstance(part, list) and part and all(isinstance(entry, dict) and "name" in entry for entry in part):

@@ -3,12 +3,12 @@
 % octave-cli octave_peer.m FOLDER: for each NAME.fis, NAME.csv has a column for each input and output.
 pkg load fuzzy-logic-toolkit
 
-% The name in MATLAB.
+% The algebraic sum under the name that MATLAB uses.
 function y = probor (varargin)
   y = algebraic_sum (varargin{:});
 endfunction
 
-SAMPLES = 1001;    % of an integral, which is exact in this project
+SAMPLES = 1001;    % per integral; this project integrates exactly
 files = glob (fullfile (argv (){end}, '*.fis'));
 wrong = 0;
 for k = 1:numel (files)

@@ -56,7 +56,7 @@ print(*(link.server.getsockname()[1] for link in links), flush=True)
 start = time.monotonic()
 is_armed = is_in_air = False
 turn_until = landing_at = weak_since = -1.0
-every = {}  # message to seconds
+every = {}  # the interval of each message, in seconds
 due = {}
 
 

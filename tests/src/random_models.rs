@@ -166,8 +166,7 @@ fn shape(rng: &mut Rng, low: f64, high: f64) -> MembershipFunction {
     }
 }
 
-/// Steeper sigmoids equal 1 to the last digit over wide ranges, so the positions of their maxima would depend on
-/// rounding.
+/// Returns a variable with random terms. The height of about every fourth term is below 1.
 fn variable(rng: &mut Rng, name: &str, terms: usize) -> Variable {
     let scale = 10f64.powi(rng.i32(-3..4));
     let low = between(rng, -2.0, 2.0) * scale;

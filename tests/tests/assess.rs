@@ -115,7 +115,7 @@ fn several_logs_are_named_and_a_failure_does_not_stop_the_others() {
 }
 
 #[test]
-fn each_log_is_one_line_and_a_finding_decides_the_exit_code_before_no_answer() {
+fn each_log_is_one_line_and_a_failed_flight_decides_the_exit_code_before_a_missing_verdict() {
     let folder = Folder::new();
     let row = |i: u32, low: f64| format!("{},{low},1,{low},1\n", f64::from(i) * 0.04);
     let head = "t_s,motor1,motor2,motor3,motor4\n";

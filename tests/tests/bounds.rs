@@ -189,7 +189,7 @@ fn a_line_of_a_text_log_is_bounded() {
         for _ in 0..50 {
             out.write_all(&[b'a'; 1_000_000]).unwrap();
         }
-        // A continuation line is not a message of its own.
+        // The message after the long line is read.
         out.write_all(b"\nMSG, 1000000, the next line\n").unwrap();
     });
     assert_eq!(log["read"]["bad_messages"], 1);
@@ -272,6 +272,7 @@ fn steps_are_further_apart_where_there_are_too_many() {
     assert!((step_s - 0.02).abs() < 1e-4, "{step_s}");
 }
 
+/// Rows beyond the limit are counted and not kept, even if their timestamps are equal or a microsecond apart.
 #[cfg(unix)]
 #[test]
 #[ignore = "reads 1.5 GB: a minute in a release build"]

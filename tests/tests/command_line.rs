@@ -78,7 +78,6 @@ fn help_names_every_command() {
     assert!(String::from_utf8_lossy(&output.stdout).contains("assess"));
 }
 
-/// No rules must be learned from an incomplete flight, so `dataset` refuses it.
 #[test]
 fn completions_and_manual_name_every_command() {
     let commands = [

@@ -85,7 +85,7 @@ fn every_short_text_fits_with_the_largest_numbers() {
 /// `flagred validate` uses rules that were learned from these vehicles. The shares of both differ by at most 10 points.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn the_reliability_is_near_that_of_rules_that_know_the_vehicles() {
+fn the_reliability_is_near_that_of_rules_learned_from_the_vehicles() {
     let counts = |folders: &[&str]| {
         let paths = folders.iter().map(|folder| reference_data().join(folder));
         let output = flagred()

@@ -63,8 +63,8 @@ fn quad(stem: &str, clock: &str, parameters: &[(&str, f64)]) -> DataFlash {
     log
 }
 
-/// Writes a flight that is armed at `from_s`, and in the air from a second later for two seconds. `per_s` is the number
-/// of units of the clock per second.
+/// Writes a flight: the vehicle is armed at `from_s`, takes off a second later, and lands after two seconds in the air.
+/// `per_s` is the number of units of the clock per second.
 fn fly(log: &mut DataFlash, per_s: f64, from_s: f64) {
     let event = |log: &mut DataFlash, t_s: f64, id: f64| {
         log.write("EV", [Value::Number((t_s * per_s).round()), id.into()]);
@@ -102,7 +102,7 @@ fn labels_and_clocks_of_each_generation() {
 }
 
 #[test]
-fn without_functions_the_frame_counts_the_motors() {
+fn without_functions_the_frame_determines_the_number_of_motors() {
     let flight = read_both(&quad("Chan", "TimeMS", &RADIO));
     let expected = ["Chan1", "Chan2", "Chan3", "Chan4", "Chan5", "Chan6"];
     assert_eq!(outputs(&flight), (1..=6).zip(expected).collect::<Vec<_>>());

@@ -215,7 +215,7 @@ fn motor_commands_of_px4_are_computed_from_set_points() {
     log.announce(0, 2, "vehicle_thrust_setpoint");
     for row in 0..50_u64 {
         let time_us = 1_000_000 + 20_000 * row;
-        // The last thrust is too old for the last torques.
+        // No thrust is logged from row 40 on, so for the last torques the latest thrust is too old.
         if row < 40 {
             log.floats(2, time_us, &[0.0, 0.0, -0.5]);
         }

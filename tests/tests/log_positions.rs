@@ -21,7 +21,7 @@ fn known(flight: &Flight, name: &str) -> (Vec<(f64, f64)>, String) {
 }
 
 #[test]
-fn ardupilot_logs_have_the_estimate_or_else_the_receiver() {
+fn ardupilot_logs_have_the_estimated_position_or_else_that_of_the_receiver() {
     let log = |with_estimate: bool| {
         let mut log = DataFlash::new();
         log.define(130, "POS", "QLLf", "TimeUS,Lat,Lng,Alt");

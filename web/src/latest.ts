@@ -1,7 +1,4 @@
-/**
- * Handles requests that are made faster than they are answered: one runs, and of the waiting ones only the latest runs
- * next.
- */
+/** Runs one request at a time. Of the requests made meanwhile, only the latest is run. */
 
 export interface Latest<A extends unknown[]> {
   /** Resolves when a run for this or a later request has ended. */

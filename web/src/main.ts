@@ -85,7 +85,7 @@ async function show(file: BackingFile | undefined): Promise<void> {
   if (!isNew) room.shown?.(there.parameters);
 }
 
-/** Reports any error: a silent page is worse than a broken one. */
+/** Reports an error that nothing else handles, so that the page never fails without a message. */
 function broken(error: unknown): void {
   clearTimeout(saying);
   said.textContent = `The page has a defect: ${error instanceof Error ? error.message : String(error)}`;

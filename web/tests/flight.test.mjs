@@ -186,10 +186,10 @@ test('other thresholds give the verdict of a profile that has them', async () =>
   assert.equal(await room.badge(basename(GUST)), 'FAIL');
   await page.getByText('the thresholds were different?').click();
   const field = (name) => page.getByRole('spinbutton', { name });
-  await field('FAIL, from a risk of, %').fill('95');
+  await field('FAIL, raised at a risk of, %').fill('95');
   await page.locator('.what-if-verdict').getByText('WARN').waitFor();
   assert.equal(await page.locator('.what-if-verdict').textContent(), 'With the profile FAIL, with these thresholds WARN.');
-  await field('WARN, reached for, s').fill('300');
+  await field('WARN, reached for at least, s').fill('300');
   await room.verdict('GOOD');
   const { content } = await room.download('JSON');
   // The report contains the changed profile, with which the command line gives the same verdict.

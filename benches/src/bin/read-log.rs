@@ -1,7 +1,7 @@
 //! Reads a flight log several times and prints the speed, for `logs.py`.
 //!
-//! `read-log LOG RUNS [SIGNAL...]`: with signals, only these are decoded; `none` stands for
-//! the motor commands only. Prints one line of JSON.
+//! `read-log LOG RUNS [SIGNAL...]`: if signals are named, only these are decoded; with `none`, only the motor commands.
+//! Prints one line of JSON.
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);

@@ -88,7 +88,7 @@ pub const TARGETS: [Target; 8] = [
 /// The default profile.
 static SHIPPED: LazyLock<Profile> = LazyLock::new(|| Profile::shipped().unwrap());
 
-/// Asserts that a text is safe on a terminal: it has no control characters but line ends and tabs.
+/// Asserts that a text is safe on a terminal: it contains no control characters except line ends and tabs.
 fn assert_harmless(text: &str) {
     let found = text.find(|c: char| c.is_control() && !"\n\t".contains(c));
     if let Some(offset) = found {
@@ -99,7 +99,7 @@ fn assert_harmless(text: &str) {
     }
 }
 
-/// Asserts that a text is safe on a terminal: it contains no control characters except line ends and tabs.
+/// Removes the control sequences (`ESC [`) that end with one of the characters in `ends`.
 fn without(ends: &str, text: &str) -> String {
     let mut parts = text.split("\u{1b}[");
     let mut plain = parts.next().unwrap_or_default().to_owned();

@@ -93,8 +93,9 @@ struct Link {
     watch: Watch<'static>,
     vehicle: Sender,
     now_s: f64,
-    /// Time at which the vehicle sends again.
+    /// The time of the next motor commands.
     commands_s: f64,
+    /// The time of the next heartbeat.
     beat_s: f64,
 }
 
@@ -181,7 +182,7 @@ impl Link {
         self.now_s = end_s;
     }
 
-    /// Asserts that messages are harmless, and that there is no warning while only packets of the vehicle are accepted.
+    /// Asserts that messages are harmless and, if `is_true` (only packets of the vehicle were accepted), that none is a warning.
     fn look(&mut self, is_true: bool) {
         let reported = self.watch.reported();
         reported.words.iter().for_each(|line| assert_harmless(line));

@@ -17,7 +17,7 @@ use super::{
 
 /// A time on the ground shorter than this, in seconds, is not a landing.
 const TOUCH_S: f64 = 1.0;
-/// A time in seconds. If the motors begin to idle within this time after a high risk, the vehicle has not landed.
+/// If the motors begin to idle within this time, in seconds, after a high risk, the vehicle has not landed.
 const TROUBLE_S: f64 = 2.0;
 /// Motors that idle for this long in the air, in seconds, indicate a fall.
 const FALL_S: f64 = 3.0;

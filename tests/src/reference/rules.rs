@@ -34,9 +34,8 @@ pub struct Set<'a> {
 /// A function that defuzzifies a [`Set`]; it returns `None` if the set is 0 everywhere.
 pub type Defuzzify<'a> = &'a dyn Fn(&Set<'_>) -> Option<f64>;
 
-/// The value of each output at a point; `None` if no rule fires and there is no default. Integrals
-/// are sums of `samples` samples between every two neighbouring positions given by parameters of
-/// shapes.
+/// The value of each output at a point; `None` if no rule fires and there is no default. The range is divided at the
+/// parameters of shapes that are positions, and integrals are sums over `samples` samples in each part.
 pub fn evaluate(model: &Model, point: &[f64], samples: usize) -> Vec<Option<f64>> {
     evaluate_with(model, point, &|set| Some(sampled(set, samples)))
 }

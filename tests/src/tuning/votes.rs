@@ -90,7 +90,7 @@ impl Input {
         take(right, part);
     }
 
-    /// Whether the input is tuned.
+    /// Whether the input is tuned: at least one of its votes has a weight below 1.
     pub(super) fn is_tuned(&self) -> bool {
         self.votes.iter().flatten().any(|vote| vote.weight < 1.0)
     }

@@ -121,7 +121,7 @@ fn the_header_has_the_arrays_of_a_table() {
         .take(arrays.len())
         .collect();
     assert_eq!(arrays[..], listed);
-    // The ends of stages in each array.
+    // `ends` has a field for each array, in the same order.
     macro_rules! names {
         ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => { [$(stringify!($array)),*].join(", ") };
     }

@@ -451,7 +451,7 @@ fn every_signal_and_statistic_is_the_same_in_the_script() {
 /// The battery level is unknown in the first minute, so values are assumed. Once the level falls below 80 %, the ratio is
 /// unknown.
 #[test]
-fn signals_of_two_and_missing_ones_are_the_same_in_the_script() {
+fn ratios_products_and_missing_signals_are_the_same_in_the_script() {
     let folder = Folder::new();
     let (estimator, file) = super::profile_of(
         &folder,

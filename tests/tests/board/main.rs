@@ -184,7 +184,7 @@ fn plans_agree_with_the_monitor_on_every_flight() {
     }
 }
 
-/// A rule whose strength has a lower index than the strengths of its output raises nothing, and does not cause a panic.
+/// A rule whose strength has a lower index than the first strength of its output raises nothing, and does not cause a panic.
 #[test]
 fn an_action_without_an_output_is_not_a_cause() {
     let estimator = estimator("flagred-paper");
@@ -292,7 +292,7 @@ fn profile_of(folder: &Folder, of: &[&str]) -> (Estimator, String) {
 fn every_signal_and_notice_is_the_same_in_borrowed_memory_and_in_c() {
     let folder = Folder::new();
     let measures = same_lent_and_in_c(profile_of_every_signal(&folder));
-    // In the shipped flights, an alarm is raised before trims are known, so there is no imbalance relative to them.
+    // In the shipped flights, an alarm is raised before the trims are known, so imbalance relative to trims is not expected.
     for expected in ["command noise", "pair imbalance", "reserve", "risk"] {
         assert!(measures.contains(expected), "{measures:?}");
     }

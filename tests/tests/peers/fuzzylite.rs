@@ -9,7 +9,7 @@ use fuzzy::Model;
 
 use super::{SHIPPED, model, python, run_peer, write};
 
-/// A shape over [0, 10], of the variable `own`.
+/// A random shape over [0, 10] for a term of the variable `own`.
 fn shape(rng: &mut Rng, own: &str) -> String {
     let mut places: Vec<f64> = (0..4).map(|_| (rng.f64() * 100.0).round() / 10.0).collect();
     places.sort_by(f64::total_cmp);

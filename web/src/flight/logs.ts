@@ -51,7 +51,7 @@ function about(entry: Entry): string {
   }
 }
 
-/** The highest risk: of judged time, or of a finding that lasted longer. */
+/** The highest risk in judged time, or in a finding that extends beyond judged time. */
 function highest({ summary, findings }: Brief): number | undefined {
   const ofRisk = findings.filter(({ measure, risk_output }) => measure === 'risk' && risk_output === undefined);
   const values = [summary.risk_max, ...ofRisk].flatMap((of) => (of ? [of.value_pct] : []));
@@ -77,13 +77,13 @@ interface Row {
 }
 
 /**
- * Creates the table; only changed entries are drawn again. It is hidden while it contains only one flight, which is
- * shown.
+ * Creates the table; only changed entries are drawn again. It is hidden while it contains only the flight that the room
+ * shows.
  */
 export function logList(actions: Actions): LogList {
   const rows = new Map<Entry, Row>();
   let shown: { entries: readonly Entry[]; current: Entry | undefined } = { entries: [], current: undefined };
-  /** The column by which the table is sorted, and whether in reverse. At first, logs are in the order of dropping. */
+  /** The column that sorts the table, and whether in reverse. At first, logs are in the order in which they were added. */
   let sorted: { column: number; isReversed: boolean } | undefined;
   const heads = COLUMNS.map(([words], column) => {
     const button = h('button', { type: 'button' }, words);

@@ -27,7 +27,7 @@ export function profiles(use: (source: ProfileSource) => void): Profiles {
     show(shipped, { name: chosen, text }) {
       const names = text === undefined ? shipped : [...shipped, chosen];
       const option = (value: string, words: string) => h('option', { value, selected: value === chosen }, words);
-      fill(select, ...names.map((name) => option(name, `Profile ${name}`)), option('', 'Profile from a file, or with its rules …'));
+      fill(select, ...names.map((name) => option(name, `Profile ${name}`)), option('', 'Profile from a file, rule set optional …'));
     },
   };
 }

@@ -36,7 +36,7 @@ export interface Report {
 interface Section {
   element: HTMLElement;
   charts: Chart[];
-  /** Whether there is nothing to show for the whole flight either. */
+  /** Whether the section is empty even for the whole flight. */
   isEmpty: boolean;
 }
 

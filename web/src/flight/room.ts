@@ -96,7 +96,7 @@ export function open(root: HTMLElement, app: App): Room {
 
   const listLogs = (): void => {
     list.show(entries, isComparing ? undefined : current);
-    // The table of several logs removes them.
+    // If there are several logs, the table has a button to remove each of them.
     closeButton.hidden = entries.length > 1;
   };
   const source = (): ProfileSource => (isUnchanged(changes) || !facts ? base : { ...base, text: facts.text });

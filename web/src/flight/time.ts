@@ -13,7 +13,7 @@ export function minutes(seconds: number, decimals = 1): string {
 /** The shortest stretch that is shown, in seconds. */
 const SHORTEST_S = 0.5;
 
-/** The part of a stretch that is within another one; `undefined` if it is all of it. */
+/** The stretch `part`, moved into `whole`; `undefined` if it is about as long as `whole`, or longer. */
 export function within(part: Stretch, whole: Stretch): Stretch | undefined {
   const length_s = Math.max(part.end_s - part.start_s, SHORTEST_S);
   if (!(length_s < (whole.end_s - whole.start_s) * 0.999)) return undefined;

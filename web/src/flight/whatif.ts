@@ -25,11 +25,11 @@ interface Field {
 }
 
 const level = (name: LevelName): Field[] => [
-  { place: [name, 'raise', 'risk_pct'], label: 'from a risk of', unit: '%', slider: true },
-  { place: [name, 'until', 'risk_pct'], label: 'held down to', unit: '%' },
-  { place: [name, 'raise', 'elevated_risk_pct'], label: 'or an elevated risk of', unit: '%' },
-  { place: [name, 'until', 'elevated_risk_pct'], label: 'held down to', unit: '%' },
-  { place: [name, 'after_s'], label: 'reached for', unit: 's' },
+  { place: [name, 'raise', 'risk_pct'], label: 'raised at a risk of', unit: '%', slider: true },
+  { place: [name, 'until', 'risk_pct'], label: 'held down to a risk of', unit: '%' },
+  { place: [name, 'raise', 'elevated_risk_pct'], label: 'or at an elevated risk of', unit: '%' },
+  { place: [name, 'until', 'elevated_risk_pct'], label: 'held down to an elevated risk of', unit: '%' },
+  { place: [name, 'after_s'], label: 'reached for at least', unit: 's' },
 ];
 
 const GROUPS: [string, Field[]][] = [

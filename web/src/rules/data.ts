@@ -45,7 +45,7 @@ export function data(app: App, place: Place): Data {
   const hint = h('p', { class: 'soft hint' });
   const report = h('div', { class: 'errors' });
   const complete = h('input', { type: 'checkbox' });
-  const tune = h('button', { type: 'button', class: 'main', title: 'Move the numbers of the terms to reduce the error' }, 'Tune');
+  const tune = h('button', { type: 'button', class: 'main', title: 'Adjust the numbers of the terms to reduce the error' }, 'Tune');
   const learn = h('button', { type: 'button', title: 'Replace the rules by rules learned from the rows' }, 'Learn rules');
   const stop = h('button', { type: 'button', hidden: true, title: 'Stop, and keep the best rule set so far' }, 'Stop');
   const progress = h('progress', { 'aria-label': 'Search', hidden: true });
@@ -71,7 +71,7 @@ export function data(app: App, place: Place): Data {
       h('p', {}, h('b', {}, name), h('span', { class: 'soft' }, ` ${rows} ${rows === 1 ? 'row' : 'rows'} with values of ${output}`)),
       h('dl', {}, figure('RMS error', rms), figure('Mean error', mean), figure('Largest error', largest)),
       refusedCount > 0 && h('details', {}, h('summary', {}, `${refusedCount} ${refusedCount === 1 ? 'row is' : 'rows are'} not used`), h('ul', {}, ...refused.map((line) => h('li', {}, line)), refusedCount > refused.length && h('li', {}, `and ${refusedCount - refused.length} more`))),
-      withoutValue > 0 && h('p', { class: 'soft' }, `The rule set has no value in ${withoutValue} of them: no rule fires.`),
+      withoutValue > 0 && h('p', { class: 'soft' }, `No rule fires in ${withoutValue} of the rows, so the rule set has no value there.`),
       worst.length > 0 &&
         h(
           'div',
@@ -150,7 +150,7 @@ export function data(app: App, place: Place): Data {
         if (file.size > LARGEST_BYTES) throw new Error(`\`${file.name}\` is larger than 50 MB: use fewer rows`);
         csv = { name: file.name, text: new TextDecoder('utf-8', { fatal: true }).decode(await file.arrayBuffer()) };
       } catch (error) {
-        return app.say(error instanceof TypeError ? `\`${file.name}\` is not a text` : (error as Error).message);
+        return app.say(error instanceof TypeError ? `\`${file.name}\` is not a text file` : (error as Error).message);
       }
       tools.hidden = false;
       state.textContent = '';

@@ -27,7 +27,7 @@ export function explain(place: HTMLElement, about: About, { outputs, rules, inpu
   const degrees = inputs.map((input, i) => {
     const terms = input.terms.filter(({ degree }) => degree > 0).map(({ term, degree, lower }) => `${term} ${typeof lower === 'number' ? between(lower, degree) : short(degree)}`);
     const unit = about.inputs[i]?.unit ?? null;
-    return h('li', {}, h('b', {}, input.name), ` ${told(input.value, unit)} `, h('span', { class: 'soft' }, terms.join(', ') || '0 in every term'));
+    return h('li', {}, h('b', {}, input.name), ` ${told(input.value, unit)} `, h('span', { class: 'soft' }, terms.join(', ') || 'degree 0 in every term'));
   });
   fill(
     place,

@@ -59,7 +59,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
   function refused(error: Error): void {
     app.say(error instanceof Trapped ? `flagred has a defect, but continues: ${error.message}` : error.message);
   }
-  // This runs only when it is known which text caused the crash.
+  // Deferred until `guarded` has stored the text that caused the crash.
   engine.onRestart = () => setTimeout(() => edit.text() !== poison && changed(edit.text()));
 
   // The parts of the room.
@@ -113,7 +113,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     },
     app.say,
   );
-  const stale = h('p', { class: 'stale', hidden: true }, 'The text has errors. What is shown here belongs to the last text without errors.');
+  const stale = h('p', { class: 'stale', hidden: true }, 'The text has errors. This part of the page shows the last text without errors.');
   const legend = h('ul', { class: 'legend rules', hidden: true });
   const selects = {
     output: h('select', { 'aria-label': 'Output', onchange: chosen }),
@@ -158,7 +158,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     'div',
     { class: 'bar-of-tools', role: 'toolbar', 'aria-label': 'Rule set' },
     group(startFrom, button('Open', 'Open a rule set in YAML, FIS, FLL, FCL or FML', () => file.click()), file, save),
-    group(undo, redo, button('Format', 'One layout (Shift+Alt+F)', format)),
+    group(undo, redo, button('Format', 'Format the text (Shift+Alt+F)', format)),
     group(button('Copy link', 'Copy a link that contains this rule set', () => void share())),
   );
   const paper = h('div', { class: 'editor' });
@@ -408,7 +408,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
       setAside();
       put(text);
     } catch (error) {
-      if (error instanceof TypeError) app.say(`\`${file.name}\` is not a text`);
+      if (error instanceof TypeError) app.say(`\`${file.name}\` is not a text file`);
       else refused(error as Error);
     }
   }
@@ -431,10 +431,10 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     parameters.set('text', await pack(edit.text()));
     app.navigate(parameters);
     const link = location.href;
-    if (link.length > LONGEST) app.say('The link is in the address bar, but long: some programs truncate it. A file is safer.');
+    if (link.length > LONGEST) app.say('The link in the address bar is so long that some programs truncate it. A file is safer.');
     else {
       const isCopied = await navigator.clipboard?.writeText(link).then(() => true, () => false);
-      app.say(isCopied ? 'The link is copied: the rule set is in it.' : 'The link is in the address bar: copy it from there.');
+      app.say(isCopied ? 'The link is copied. It contains the rule set.' : 'The link is in the address bar: copy it from there.');
     }
   }
 

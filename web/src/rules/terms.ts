@@ -108,7 +108,7 @@ function plot(first: DrawnVariable, index: number, { distinct, lines }: Colours,
     const dot = coloured(s('circle', { class: 'dot', r: 5 }), t);
     const group = s('g', { class: 'handle', tabindex: 0, role: 'slider' }, s('circle', { class: 'reach', r: 16 }), dot);
     const place: Place = { variable: index, term: t, handle: i };
-    /** The target position, until it is drawn there. */
+    /** The position to which the handle was moved, until it is drawn there. */
     let aim: { x: number; degree: number } | undefined;
     const now = () => ({ ...variable.terms[t]!.handles[i]!, ...aim });
     const move = (x: number, degree: number) => {
