@@ -124,8 +124,8 @@ impl Learner {
     /// Creates a learner for the variables of a model with one output.
     ///
     /// # Errors
-    /// The model does not have exactly one output, or has rule blocks or type-2 terms; a variable has no terms; or the
-    /// settings name an input that the model does not have.
+    /// The model does not have exactly one output, or has rule blocks or type-2 terms; a variable has no terms; the
+    /// settings name an input that the model does not have; or there are too many antecedents for the settings.
     pub fn new(model: &Model, settings: Settings) -> Result<Learner, LearnError> {
         let [output] = model.outputs.as_slice() else {
             return Err(LearnError::Outputs {
@@ -157,6 +157,10 @@ impl Learner {
             if model.inputs.iter().all(|input| input.name != *name) {
                 return Err(LearnError::NoInput { name: name.clone() });
             }
+        }
+        let (antecedents, max) = (resolve::antecedents(model), resolve::MAX_ANTECEDENTS);
+        if antecedents > max && (settings.complete || !settings.monotone.is_empty()) {
+            return Err(LearnError::TooManyAntecedents { antecedents, max });
         }
         Ok(Learner {
             model: model.clone(),

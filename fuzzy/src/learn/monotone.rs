@@ -17,10 +17,10 @@ const NO_SAMPLES: f64 = 1e-6;
 /// Changes consequents so that they satisfy the required directions, and returns the number of changed ones.
 ///
 /// Along an input, neighbouring antecedents that violate the direction are pooled: each gets the mean value of all,
-/// weighted by their samples (the pool-adjacent-violators algorithm, applied to the inputs in turn until nothing
-/// changes). The values are then rounded to terms. If the order is still violated, because of the rounding or across
-/// antecedents without a rule, a term is replaced by the middle between the highest term below it and the lowest term
-/// above it.
+/// weighted by the degrees of their samples (the pool-adjacent-violators algorithm, applied to the inputs in turn until
+/// nothing changes). The values are then rounded to terms. If the order is still violated, because of the rounding or
+/// across antecedents without a rule, a term is replaced by the middle between two others: the highest term of the
+/// antecedents that must not be above it, and the lowest term of those that must not be below it.
 pub(super) fn enforce(
     learner: &Learner,
     output: &Variable,

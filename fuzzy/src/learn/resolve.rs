@@ -4,12 +4,12 @@ use alloc::{boxed::Box, collections::BTreeMap, format, string::String, vec, vec:
 
 use super::{Cell, LearnResult, Learner, Resolution, Votes, antecedent, monotone};
 use crate::{
-    model::{RejectedConsequent, Rule, Variable},
+    model::{Model, RejectedConsequent, Rule, Variable},
     rule::Consequent,
 };
 
-/// The maximum number of antecedents that are completed or made monotone.
-const MAX_COMPLETED: u64 = 1_000_000;
+/// The maximum number of antecedents that are completed, made monotone, or searched for missing rules.
+pub(super) const MAX_ANTECEDENTS: u64 = 1_000_000;
 
 /// The consequent of an antecedent.
 pub(super) struct Decision {
@@ -19,6 +19,17 @@ pub(super) struct Decision {
     pub(super) term: Option<u16>,
     pub(super) confidence: Option<f64>,
     pub(super) note: Option<String>,
+}
+
+/// The number of terms of each input.
+fn shape(model: &Model) -> impl Iterator<Item = u16> {
+    let inputs = model.inputs.iter();
+    inputs.map(|input| u16::try_from(input.terms.len()).unwrap_or(u16::MAX))
+}
+
+/// The number of antecedents, which are combinations of a term of each input; at most `u64::MAX`.
+pub(super) fn antecedents(model: &Model) -> u64 {
+    shape(model).fold(1, |count, terms| count.saturating_mul(u64::from(terms)))
 }
 
 pub(super) fn resolve(learner: &Learner) -> LearnResult {
@@ -36,15 +47,8 @@ pub(super) fn resolve(learner: &Learner) -> LearnResult {
     let Some(output) = model.outputs.first().map(|o| &o.variable) else {
         return learned;
     };
-    let shape: Vec<u16> = learner
-        .model
-        .inputs
-        .iter()
-        .map(|input| u16::try_from(input.terms.len()).unwrap_or(u16::MAX))
-        .collect();
-    let antecedents = shape
-        .iter()
-        .fold(1u64, |n, terms| n.saturating_mul(u64::from(*terms)));
+    let shape: Vec<u16> = shape(model).collect();
+    let antecedents = antecedents(model);
     let mut decisions: BTreeMap<Box<[u16]>, Decision> = BTreeMap::new();
     for (terms, cell) in &learner.cells {
         learned.conflicts += u64::from(cell.votes.len() > 1);
@@ -56,16 +60,14 @@ pub(super) fn resolve(learner: &Learner) -> LearnResult {
             learned.left_out += 1;
         }
     }
-    if antecedents <= MAX_COMPLETED {
-        if learner.settings.complete && !decisions.is_empty() {
-            learned.completed = complete(&shape, &mut decisions);
-        }
-        if !learner.settings.monotone.is_empty() {
-            learned.moved = monotone::enforce(learner, output, &mut decisions);
-        }
+    if learner.settings.complete {
+        learned.completed = complete(&shape, &mut decisions);
+    }
+    if !learner.settings.monotone.is_empty() {
+        learned.moved = monotone::enforce(learner, output, &mut decisions);
     }
     learned.missing = antecedents - decisions.len() as u64;
-    if learned.missing > 0 && antecedents <= MAX_COMPLETED {
+    if learned.missing > 0 && antecedents <= MAX_ANTECEDENTS {
         learned.missing_antecedents = every_antecedent(&shape)
             .filter(|terms| !decisions.contains_key(terms.as_slice()))
             .filter_map(|terms| antecedent(learner, &terms))
@@ -195,41 +197,82 @@ fn every_antecedent(shape: &[u16]) -> impl Iterator<Item = Vec<u16>> + '_ {
 
 /// Gives each antecedent without a decision the decision of the nearest antecedent, and returns the number of completed
 /// antecedents.
+///
+/// The distance grows by a step at a time. An antecedent at a distance has the same nearest ones as those of its neighbours that
+/// are a step closer. Of the nearest ones, the one with the highest value is used, then the first one.
 fn complete(shape: &[u16], decisions: &mut BTreeMap<Box<[u16]>, Decision>) -> u64 {
-    let known: Vec<(Box<[u16]>, f64, Option<u16>)> = decisions
-        .iter()
-        .map(|(terms, decision)| (terms.clone(), decision.value, decision.term))
-        .collect();
-    let mut completed = 0;
-    for terms in every_antecedent(shape) {
-        if decisions.contains_key(terms.as_slice()) {
-            continue;
+    // For each input, the number of its terms and the distance between the indices of antecedents with neighbouring terms.
+    let mut axes: Vec<(usize, usize)> = shape.iter().map(|n| (usize::from(*n), 1)).collect();
+    let mut cells = 1;
+    for (terms, stride) in axes.iter_mut().rev() {
+        *stride = cells;
+        cells *= *terms;
+    }
+    let known: Vec<(f64, Option<u16>)> = (decisions.values().map(|d| (d.value, d.term))).collect();
+    let value_of = |from: usize| known.get(from).map_or(f64::NEG_INFINITY, |one| one.0);
+    let is_better = |from: usize, than: usize| {
+        let by_value = value_of(from).total_cmp(&value_of(than));
+        by_value.then(than.cmp(&from)).is_gt()
+    };
+    // For each antecedent, the steps to the nearest decision and its index in `known`.
+    let mut nearest: Vec<Option<(u32, usize)>> = vec![None; cells];
+    let mut layer = Vec::new();
+    for (from, terms) in decisions.keys().enumerate() {
+        let terms = terms.iter().zip(&axes);
+        let cell: usize = terms.map(|(term, axis)| usize::from(*term) * axis.1).sum();
+        if let Some(nearest) = nearest.get_mut(cell) {
+            *nearest = Some((0, from));
+            layer.push(cell);
         }
-        let steps = |other: &[u16]| -> u32 {
-            let pairs = other.iter().zip(&terms);
-            pairs.map(|(a, b)| u32::from(a.abs_diff(*b))).sum()
-        };
-        let nearest = known.iter().min_by(|a, b| {
-            let near = steps(&a.0).cmp(&steps(&b.0));
-            near.then(b.1.total_cmp(&a.1))
-        });
-        if let Some((from, value, term)) = nearest {
+    }
+    for steps in 1.. {
+        let mut next = Vec::new();
+        for cell in layer {
+            let Some(&Some((_, from))) = nearest.get(cell) else {
+                continue;
+            };
+            let neighbours = axes.iter().flat_map(|(terms, stride)| {
+                let term = cell / stride % terms;
+                let below = (term > 0).then(|| cell - stride);
+                let above = (term + 1 < *terms).then(|| cell + stride);
+                below.into_iter().chain(above)
+            });
+            for neighbour in neighbours {
+                match nearest.get_mut(neighbour) {
+                    Some(unset @ None) => {
+                        *unset = Some((steps, from));
+                        next.push(neighbour);
+                    }
+                    Some(Some((at, other))) if *at == steps && is_better(from, *other) => {
+                        *other = from;
+                    }
+                    _ => {}
+                }
+            }
+        }
+        if next.is_empty() {
+            break;
+        }
+        layer = next;
+    }
+    let mut completed = 0;
+    for (terms, nearest) in every_antecedent(shape).zip(nearest) {
+        if let Some((steps @ 1.., from)) = nearest
+            && let Some(&(value, term)) = known.get(from)
+        {
             completed += 1;
-            decisions.insert(
-                terms.clone().into_boxed_slice(),
-                Decision {
-                    value: *value,
-                    term: *term,
-                    confidence: None,
-                    note: Some(format!(
-                        "no samples; consequent of the nearest rule, {} away",
-                        match steps(from) {
-                            1 => "1 step".into(),
-                            steps => format!("{steps} steps"),
-                        }
-                    )),
-                },
-            );
+            let steps = match steps {
+                1 => "1 step".into(),
+                steps => format!("{steps} steps"),
+            };
+            let note = format!("no samples; consequent of the nearest rule, {steps} away");
+            let decision = Decision {
+                value,
+                term,
+                confidence: None,
+                note: Some(note),
+            };
+            decisions.insert(terms.into_boxed_slice(), decision);
         }
     }
     completed

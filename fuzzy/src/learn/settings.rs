@@ -82,7 +82,7 @@ pub enum Direction {
 /// learner.add(&[90.0, 9.0], 1.0)?;
 /// let learned = learner.finish();
 /// assert_eq!((learned.completed, learned.missing), (1, 0));
-/// assert!(learned.model.rules[0].note.is_some()); // the note names the completed rule
+/// assert!(learned.model.rules[0].note.is_some()); // the note states that the rule was completed
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -96,7 +96,7 @@ pub struct Settings {
     pub min_degree: f64,
     /// Whether an antecedent without a rule gets the consequent of the nearest antecedent. The distance is the number
     /// of steps between terms; among equally near antecedents the one with the highest output is used. The note of
-    /// the rule states that it was completed in this way.
+    /// the rule states that it was completed in this way. Requires at most 1,000,000 antecedents, as `monotone` does.
     pub complete: bool,
     /// The inputs along which the consequents are made monotone, each with the required direction. Neighbouring
     /// antecedents that violate the direction are pooled. Rules that the model already contains are not changed. The
@@ -137,6 +137,13 @@ pub enum LearnError {
         /// The unknown name.
         name: String,
     },
+    /// There are too many antecedents to complete them or to make their consequents monotone.
+    TooManyAntecedents {
+        /// The number of antecedents: combinations of a term of each input.
+        antecedents: u64,
+        /// The maximum number of antecedents.
+        max: u64,
+    },
 }
 
 impl core::fmt::Display for LearnError {
@@ -145,7 +152,7 @@ impl core::fmt::Display for LearnError {
             LearnError::Outputs { outputs } => {
                 write!(
                     f,
-                    "the rule set has {outputs} outputs that no other output reads; learning needs exactly one"
+                    "the rules of {outputs} outputs cannot be learned together; learning needs exactly one output"
                 )
             }
             LearnError::Chain { message } => {
@@ -166,6 +173,10 @@ impl core::fmt::Display for LearnError {
             ),
             LearnError::NoTerms { variable } => write!(f, "`{variable}` has no terms"),
             LearnError::NoInput { name } => write!(f, "`{name}` is not an input to learn over"),
+            LearnError::TooManyAntecedents { antecedents, max } => write!(
+                f,
+                "the inputs have {antecedents} combinations of terms, but rules can be completed or made monotone only for up to {max}"
+            ),
         }
     }
 }
@@ -192,6 +203,9 @@ impl LearnError {
             }
             LearnError::NoTerms { .. } => "add terms, such as `partition: [low, medium, high]`",
             LearnError::NoInput { .. } => "name inputs of the rule set",
+            LearnError::TooManyAntecedents { .. } => {
+                "learn over fewer inputs or terms, or neither complete the rules nor make them monotone"
+            }
         }
     }
 }

@@ -219,7 +219,7 @@ fn rules_can_be_completed_and_made_monotone() {
     }
 }
 
-/// Covers terms in any order, and antecedents without a rule between others.
+/// The terms are not in ascending order, and there are antecedents without a rule between others that have one.
 #[test]
 fn rules_are_monotone_over_gaps_and_in_the_order_of_the_terms() {
     let model = crate::yaml::parse(
@@ -377,10 +377,58 @@ fn settings_that_do_not_fit_the_model_are_refused() {
     };
     let error = Learner::new(&variables(), settings).unwrap_err();
     assert_eq!(error.to_string(), "`wind` is not an input to learn over");
+
+    let mut model = variables();
+    model.inputs = ["a", "b", "c"].map(|name| numbered(name, 101)).into();
+    let settings = Settings {
+        complete: true,
+        ..Settings::default()
+    };
+    let error = Learner::new(&model, settings).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "the inputs have 1030301 combinations of terms, but rules can be completed or made monotone only for up to 1000000"
+    );
+    assert!(Learner::new(&model, Settings::default()).is_ok());
 }
+
+/// A variable with this number of terms, whose peaks are 0, 1, 2 and so on.
+fn numbered(name: &str, terms: usize) -> Variable {
+    let names: Vec<String> = (0..terms).map(|term| format!("t{term}")).collect();
+    Variable::new(name, 0.0, terms as f64 - 1.0).partition(names.iter().map(String::as_str))
+}
+
+/// The number of terms of each input of the model that is completed below.
+const SHAPE: [usize; 3] = [3, 4, 5];
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Compared with a search of all rules for the nearest one, and of the nearest ones for the highest output.
+    #[test]
+    fn completed_rules_have_the_consequent_of_the_nearest_rule(
+        known in prop::collection::btree_map(0usize..60, 0usize..5, 1..20),
+    ) {
+        let mut model = variables();
+        model.inputs = ["a", "b", "c"].into_iter().zip(SHAPE).map(|(name, count)| numbered(name, count)).collect();
+        model.outputs = vec![Output::new(numbered("y", 5))];
+        let settings = Settings { complete: true, ..Settings::default() };
+        let mut learner = Learner::new(&model, settings).unwrap();
+        let place = |i: usize| [i / 20, i / 5 % 4, i % 5];
+        for (i, term) in &known {
+            let [a, b, c] = place(*i).map(|term| term as f64);
+            learner.add(&[a, b, c, *term as f64], 1.0).unwrap();
+        }
+        let learned = learner.finish();
+        prop_assert_eq!(learned.completed as usize, 60 - known.len());
+        for (i, rule) in learned.model.rules.iter().enumerate() {
+            let steps = |other: usize| place(i).iter().zip(place(other)).map(|(a, b)| a.abs_diff(b)).sum::<usize>();
+            let nearest = known.keys().map(|other| steps(*other)).min().unwrap();
+            let term = known.iter().filter(|(other, _)| steps(**other) == nearest).map(|(_, term)| term).max().unwrap();
+            prop_assert_eq!(&rule.rule.consequents[0].term.text, &format!("t{term}"), "{}", i);
+            prop_assert_eq!(rule.note.as_ref().map(|note| note.contains(&format!(", {nearest} step"))), (nearest > 0).then_some(true));
+        }
+    }
 
     #[test]
     fn the_order_of_the_rows_does_not_matter(
