@@ -95,6 +95,7 @@ pub(super) fn run(
         printer,
         endpoints,
         estimator,
+        note: String::new(),
     };
     shown.start(&names);
     for text in &small {
@@ -199,6 +200,8 @@ struct LiveOutput<'e> {
     printer: Printer,
     endpoints: &'e [Endpoint],
     estimator: &'e Estimator,
+    /// The latest note, which the screen shows.
+    note: String,
 }
 
 impl<'e> LiveOutput<'e> {
@@ -257,7 +260,7 @@ impl<'e> LiveOutput<'e> {
                 self.json(&FleetLine::Note { at_s, note: text });
             }
             OutputForm::Words => self.printer.print(lines::words(now_s, text)),
-            OutputForm::Screen => {}
+            OutputForm::Screen => text.clone_into(&mut self.note),
         }
     }
 
@@ -275,7 +278,7 @@ impl<'e> LiveOutput<'e> {
         } else {
             views.len()
         };
-        let mut lines = vec![cut(&head, columns), String::new()];
+        let mut lines = vec![cut(&head, columns), cut(&visible(&self.note), columns)];
         let named = views.iter().take(shown);
         lines.extend(named.map(|(id, view)| self.row(*id, view, columns)));
         if shown < views.len() {
@@ -311,9 +314,11 @@ impl<'e> LiveOutput<'e> {
 
     /// Leaves the full screen, and prints a line for each vehicle.
     fn end(&mut self, now_s: f64, all: &[Summary], fleet: &Fleet<'_>) {
+        // For people, this is one piece, because the queue of a screen holds only two.
+        let mut text = String::new();
         if self.form == OutputForm::Screen {
             thread::sleep(TICK);
-            self.printer.print(screen::LEAVE.to_owned());
+            text += screen::LEAVE;
             self.form = OutputForm::Words;
         }
         for one in all {
@@ -324,7 +329,7 @@ impl<'e> LiveOutput<'e> {
                 Verdict::NotAvailable(reason) => reason.help(),
                 Verdict::Known(_) => None,
             };
-            let text = match self.form {
+            match self.form {
                 OutputForm::Json => {
                     self.json(&FleetLine::Summary {
                         vehicle: &name,
@@ -334,7 +339,6 @@ impl<'e> LiveOutput<'e> {
                         risk_max: one.risk_max,
                         lost_share: one.lost_share,
                     });
-                    continue;
                 }
                 _ => {
                     let most = one.risk_max.map_or("risk unknown".to_owned(), |most| {
@@ -342,16 +346,16 @@ impl<'e> LiveOutput<'e> {
                     });
                     let why = reason.map_or(String::new(), |reason| format!("; {reason}"));
                     let help = help.map_or(String::new(), |help| format!("\n     help: {help}"));
-                    format!("{verdict:<4} {}: {most}{why}{help}\n", visible(&name))
+                    let name = visible(&name);
+                    text += &format!("{verdict:<4} {name}: {most}{why}{help}\n");
                 }
-            };
-            self.printer.print(text);
+            }
         }
         let worst = worst(all);
         let (vehicles, dropped) = (all.len(), self.printer.dropped());
-        let text = match self.form {
+        match self.form {
             OutputForm::Json => {
-                return self.json(&FleetLine::Ended {
+                self.json(&FleetLine::Ended {
                     worst: (&worst).into(),
                     vehicles,
                     heartbeats_refused: fleet.refused,
@@ -359,12 +363,11 @@ impl<'e> LiveOutput<'e> {
                     dropped_lines: dropped,
                 });
             }
-            _ => lines::words(
-                now_s,
-                &format!("worst verdict {worst} of {vehicles} vehicles"),
-            ),
-        };
-        self.printer.print(text);
+            _ => {
+                let ended = format!("worst verdict {worst} of {vehicles} vehicles");
+                self.printer.print(text + &lines::words(now_s, &ended));
+            }
+        }
     }
 }
 
@@ -415,6 +418,7 @@ mod tests {
             printer: Printer::new(1),
             endpoints: &endpoints,
             estimator: &estimator,
+            note: String::new(),
         };
         for (columns, rows) in [(80, 24), (60, 8), (20, 5), (1, 1), (0, 0)] {
             let frame =

@@ -21,7 +21,7 @@ const VALUES: usize = 32;
 const TEXT_WAIT_S: f64 = 1.0;
 /// A text is not sent if another watch sent a text on the same topic at most this many seconds ago.
 const RECENT_TEXT_S: f64 = 2.0;
-/// Maximum number of delayed texts, and of texts received from other watches.
+/// Maximum number of delayed texts, beyond which the oldest is sent at once, and of texts received from other watches.
 const TEXTS: usize = 8;
 
 /// Sends the messages of the watch to the vehicle's system, unless another watch has precedence.
@@ -135,7 +135,11 @@ impl WatchSender {
         if self.sender.is_none() || self.received.iter().any(is_recent) {
             return;
         }
-        self.waiting.truncate(TEXTS - 1);
+        if self.waiting.len() >= TEXTS
+            && let Some(first) = self.waiting.pop_front()
+        {
+            self.send_message(first.to, &first.message, out);
+        }
         self.waiting.push_back(DelayedText {
             due_s: now_s + TEXT_WAIT_S,
             topic,
