@@ -225,3 +225,13 @@ fn an_unknown_flight_state_stays_unknown_in_csv() {
     let in_air = [0.5, 1.5, 2.5, 3.0].map(|t_s| flight.is_in_air(t_s));
     assert_eq!(in_air, [Some(true), Some(true), Some(false), Some(false)]);
 }
+
+#[test]
+fn a_log_without_motor_commands_does_not_grow() {
+    let csv = "t_s,in_air,altitude_m\n0,0,1\n1,0,2\n2,1,3\n3,1,4\n4,0,5\n5,0,6\n";
+    let flight = flagred_flightlog::read(csv.as_bytes(), &Options::default()).unwrap();
+    let mut written = Vec::new();
+    flight.write_csv(&mut written).unwrap();
+    let written = String::from_utf8(written).unwrap();
+    assert!(written.ends_with(csv), "{written}");
+}

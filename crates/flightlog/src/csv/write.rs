@@ -65,10 +65,13 @@ impl Flight {
         // A take-off or a landing between two rows has its own row, without commands.
         let mut changes = self.air_changes().into_iter().peekable();
         let unknown = vec![f64::NAN; motors];
+        let has_samples = !self.commands.is_empty();
         let mut row = |out: &mut dyn Write, t_s: f64, commands: &[f64]| {
             while let Some(change_s) = changes.next_if(|change_s| *change_s <= t_s) {
-                // A row of unknown commands at this time is still a sample.
-                if change_s < t_s || commands.iter().all(|raw| raw.is_nan()) {
+                // A sample without a known command needs a separate row for the change too, because a row without commands
+                // that changes the state is not read as a sample.
+                let is_unknown = has_samples && commands.iter().all(|raw| raw.is_nan());
+                if change_s < t_s || is_unknown {
                     write_row(out, change_s, &unknown)?;
                 }
             }
@@ -77,7 +80,7 @@ impl Flight {
                 false => Ok(()),
             }
         };
-        if !self.commands.is_empty() {
+        if has_samples {
             for (t_s, raw) in self.commands.rows() {
                 row(out, t_s, raw)?;
             }
@@ -156,7 +159,7 @@ impl Flight {
                 }
             }
         }
-        // Spare outputs in a log may have motor functions too.
+        // There may be more columns than the vehicle has motors, because spare outputs in a log may have motor functions.
         let columns = self.motors.len();
         if let Some(motors) = self
             .vehicle
