@@ -260,7 +260,7 @@ fn without_a_critical_step_there_is_no_area() {
         .unwrap();
     assert_eq!(row.matches("no critical step").count(), 3, "{row}");
     assert!(
-        text.contains("1 files left out:\n     1  ") && text.contains("not a flight log"),
+        text.contains("1 file left out:\n     1  ") && text.contains("not a flight log"),
         "{text}"
     );
     let document = json(&evaluate(&["--json", path]));

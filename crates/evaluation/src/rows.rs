@@ -132,7 +132,7 @@ pub fn cases<E>(
         })
         .collect();
 
-    let mut groups: Vec<&str> = Vec::new();
+    let (mut groups, mut last) = (0_u32, "");
     let mut cases = Vec::with_capacity(table.len);
     for row in 0..table.len {
         let read = |column: &Column| column.value(table, row);
@@ -152,17 +152,14 @@ pub fn cases<E>(
             let value = column.as_ref().map(read).transpose()?;
             scores.push(value.map_or(f64::NAN, |value| baseline.score(value)));
         }
-        let group = match text(file) {
-            "" => row,
-            // Rows of a file are consecutive.
-            file if groups.last() == Some(&file) => groups.len() - 1,
-            file => {
-                groups.push(file);
-                groups.len() - 1
-            }
-        };
+        // Rows of a file are consecutive. A row without a file is a group of its own.
+        let named = text(file);
+        if named.is_empty() || named != last {
+            groups += 1;
+        }
+        last = named;
         cases.push(Case {
-            group: u32::try_from(group).unwrap_or(u32::MAX),
+            group: groups,
             t_s: None,
             vehicle: text(vehicle).to_owned(),
             kind: text(kind).to_owned(),

@@ -12,7 +12,11 @@ pub fn text(evaluation: &Evaluation) -> String {
         text += &format!("{line}\n");
     }
     if !evaluation.left_out.is_empty() {
-        text += &format!("{} files left out:\n", evaluation.left_out.len());
+        let files = match evaluation.left_out.len() {
+            1 => "1 file".to_owned(),
+            files => format!("{files} files"),
+        };
+        text += &format!("{files} left out:\n");
     }
     for (reason, files) in tables::left_out(evaluation) {
         text += &format!("  {files:>4}  {reason}\n");
