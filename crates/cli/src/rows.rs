@@ -305,7 +305,9 @@ fn clamp(data: &mut Data, variables: &[&Variable]) {
 /// Refuses a file that is given twice: its rows would be both training and test rows.
 pub(crate) fn distinct(files: &[PathBuf]) -> Result<(), Failure> {
     let mut seen = BTreeSet::new();
-    match files.iter().find(|file| !seen.insert(*file)) {
+    // A file that cannot be found is reported when it is read.
+    let found = |file: &PathBuf| file.canonicalize().unwrap_or_else(|_| file.clone());
+    match files.iter().find(|file| !seen.insert(found(file))) {
         None => Ok(()),
         Some(file) => {
             let message = format!("`{}` is given twice", file.display());
