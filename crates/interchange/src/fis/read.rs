@@ -124,8 +124,8 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
         type2::settings(&mut draft, method, and);
     }
     let outputs = draft.model.outputs.len();
-    count(&mut draft, system, "NumInputs", names.len());
-    count(&mut draft, system, "NumOutputs", outputs);
+    count(&mut draft, system, ("NumInputs", "input"), names.len());
+    count(&mut draft, system, ("NumOutputs", "output"), outputs);
     draft.require_output(
         "add an `[Output1]` section, or copy the whole file again if it is cut off",
     );
@@ -146,7 +146,7 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
             );
             return draft.finish();
         }
-        count(&mut draft, system, "NumRules", entries.len());
+        count(&mut draft, system, ("NumRules", "rule"), entries.len());
         for entry in entries {
             let rules = draft.model.rules.len();
             rules::read(&mut draft, entry.value);
@@ -346,7 +346,12 @@ fn variable(
         }
     }
     let terms: Vec<&Entry<'_>> = section.entries.iter().filter(is_term).collect();
-    count(draft, section, "NumMFs", terms.len());
+    count(
+        draft,
+        section,
+        ("NumMFs", "membership function"),
+        terms.len(),
+    );
     for entry in terms {
         if !draft.allows_another_term(&variable, entry.value) {
             break;
@@ -371,7 +376,8 @@ fn variable(
     Some((variable, spans))
 }
 
-/// Makes a name distinct from those of the variable's other terms. Rules of FIS refer to terms by number, so names may be equal there.
+/// Makes a name distinct from those of the variable's other terms. In FIS, names may be equal, because rules refer to terms
+/// by number.
 fn distinct(
     draft: &mut ModelDraft<'_>,
     variable: &Variable,
@@ -421,17 +427,23 @@ pub(super) fn number(draft: &mut ModelDraft<'_>, word: &str) -> Option<f64> {
 }
 
 /// Warns if the number of parts of a section differs from the number in its key, as in a file that was cut off.
-fn count(draft: &mut ModelDraft<'_>, section: &Section<'_>, key: &str, found: usize) {
+fn count(
+    draft: &mut ModelDraft<'_>,
+    section: &Section<'_>,
+    (key, noun): (&str, &str),
+    found: usize,
+) {
     let Some(written) = section.get(key) else {
         return;
     };
     if written.parse() == Ok(found) {
         return;
     }
-    let message = format!(
-        "`{key}` is {}, but the file contains {found}",
-        quoted(written)
-    );
+    let there_are = match found {
+        1 => format!("there is 1 {noun}"),
+        _ => format!("there are {found} {noun}s"),
+    };
+    let message = format!("`{key}` is {}, but {there_are}", quoted(written));
     if found == 0 && written.parse::<usize>().is_ok() {
         let help = "copy the whole file again: it is cut off";
         draft.error("wrong-count", written, message, help);
