@@ -340,9 +340,9 @@ fn misfit(
             at.of(&of_output(output)),
             "write the output of the rule set with `range: [0, 100]`".into(),
         ),
-        EstimatorError::KeepsPrevious { .. } => (
+        EstimatorError::KeepsPrevious { output } => (
             "keeps-previous",
-            at.of(&["output"]),
+            at.of(&of_output(output)),
             "write `when_no_rule_fires: undefined` in the rule set; `gap` of the profile defines how gaps are filled".into(),
         ),
         EstimatorError::IfMissingOutside { input, low, high, .. } => (

@@ -37,7 +37,7 @@ pub(crate) struct Fields {
     key: String,
 }
 
-/// A serializer that accepts only a number.
+/// A serializer that accepts only a number or a missing value.
 struct Number;
 /// A serializer that accepts only a name.
 struct Name;

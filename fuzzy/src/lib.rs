@@ -1,4 +1,4 @@
-//! A fuzzy inference engine for Mamdani and Takagi-Sugeno rule sets, exact and without allocation in evaluation.
+//! A fuzzy inference engine for Mamdani and Takagi-Sugeno rule sets. It is exact, and can evaluate without allocation.
 //!
 //! A rule set is a text, or a [`Model`] built in code. An [`Engine`] is compiled from it once and is immutable.
 //! For given inputs it returns an outcome per output: a value, or the information that no rule fires.
@@ -87,7 +87,7 @@ mod source;
     allow(
         dead_code,
         unused_imports,
-        reason = "what only compiling a model needs"
+        reason = "only compiling a model needs them"
     )
 )]
 pub mod table;

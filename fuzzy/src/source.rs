@@ -27,8 +27,7 @@ pub struct Source {
     tree: OnceLock<Result<Node, Findings>>,
     document: OnceLock<Result<Document, Findings>>,
     engine: OnceLock<Result<Engine, Findings>>,
-    /// Whether the caller provided the document, so that it was not parsed from the text in this type. Its model may
-    /// then be invalid.
+    /// Whether the caller provided the document. Its model may then be invalid.
     is_from_elsewhere: bool,
 }
 

@@ -170,7 +170,8 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
     validator.interval_outputs(spans);
     let cycles = cycle_errors(model, spans);
     let mut findings = validator.findings;
-    // The author of two variables with one name probably meant another name, which rules may use.
+    // If two variables share a name, the author probably meant another name for one of them. Rules may use that name, so
+    // unknown names are then not reported.
     let is_repeated = findings
         .iter()
         .any(|finding| finding.code == "duplicate-variable");
@@ -207,14 +208,17 @@ fn too_large(model: &Model, spans: &Spans) -> Option<Diagnostic> {
     };
     let points = |term: &Term| {
         let lower = term.lower.as_ref().map(|lower| &lower.membership_function);
-        points_of(&term.membership_function).max(lower.map_or(0, points_of))
+        [
+            points_of(&term.membership_function),
+            lower.map_or(0, points_of),
+        ]
     };
     let of_term = variables().enumerate().flat_map(|(i, v)| {
         let terms = v.terms.iter();
-        terms.map(move |term| (i, points(term), &*term.name))
+        terms.map(move |term| (i, points(term).into_iter().max().unwrap_or(0), &*term.name))
     });
     let (owner, most_points, term) = of_term.max_by_key(|one| one.1).unwrap_or((0, 0, ""));
-    let all_points = variables().flat_map(|v| &v.terms).map(points).sum();
+    let all_points = variables().flat_map(|v| &v.terms).flat_map(points).sum();
     let rules = model.rules.len();
     let conclusions = model.rules.iter().map(|rule| rule.rule.consequents.len());
     let longest = conclusions.enumerate().max_by_key(|(_, count)| *count);

@@ -71,7 +71,7 @@ fn plateaus_steps_and_infinity() {
         let output =
             format!("{{y: {{range: [0, 10], defuzzifier: tsukamoto, terms: {{t: {{{shape}}}}}}}}}");
         let model = model(&output, "[IF x IS high THEN y IS t]");
-        // By rounding, `w z / w` may differ from `z`.
+        // Because of rounding, `w z / w` may differ from `z`.
         (value(&Engine::new(&model).unwrap(), w) * 1e12).round() / 1e12
     };
     // The value is the end of the slope, not the middle of the plateau.

@@ -42,9 +42,9 @@ impl Filling {
     ) -> Result<Filling, EvaluateError> {
         let outputs = engine.output_names().len();
         let Some(modelled) = model.outputs.get(output).filter(|_| output < outputs) else {
-            return Err(EvaluateError::WrongNumberOfOutputs {
-                expected: outputs,
-                got: output,
+            return Err(EvaluateError::UnknownOutput {
+                index: output,
+                outputs,
             });
         };
         let variable = &modelled.variable;

@@ -27,9 +27,9 @@ pub struct AcceptedFindings {
 }
 
 impl AcceptedFindings {
-    /// Removes the findings that the entries of `allow` accept from `findings`. Returns the entries, each with the
-    /// number of findings that it accepts. Errors are never accepted. If several entries accept a finding, it counts
-    /// for the first of them.
+    /// Removes from `findings` those that an entry of `allow` accepts. Returns the entries, each with the number of
+    /// findings that it accepts. Errors are never accepted. If several entries accept a finding, it counts for the
+    /// first of them.
     pub fn remove(
         allow: &[AllowedFinding],
         findings: &mut Vec<Diagnostic>,

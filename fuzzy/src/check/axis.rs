@@ -68,7 +68,8 @@ pub(super) fn points(values: &[f64], is_true: impl Fn(f64) -> bool) -> Vec<f64> 
     values.iter().copied().filter(is_alone).collect()
 }
 
-/// Returns the smallest number after `from` for which `same` is false. `same` must be true at `from` and false at `to`.
+/// Returns a number for which `same` is false, although it is true for the next smaller floating-point number. `same`
+/// must be true at `from` and false at `to`.
 pub(super) fn bisect(mut from: f64, mut to: f64, same: impl Fn(f64) -> bool) -> f64 {
     loop {
         let middle = 0.5 * (from + to);

@@ -14,14 +14,11 @@ use crate::{
 /// The largest difference between degrees that count as equal.
 const EQUAL_TOLERANCE: f64 = 0.05;
 
-/// The minimum share of a range on which a nearly constant degree is reported.
+/// The minimum share of a range on which a nearly constant degree, or the largest degree of a term, is reported.
 const MIN_SHARE: f64 = 0.98;
 
-/// The number of steps over the range of a variable, at which degrees are computed.
+/// The number of steps into which the range of a variable is divided; degrees are computed at the ends of each step.
 const STEPS: u32 = 200;
-
-/// If a term has its largest degree on at least this share of the range, the other terms of the input are too narrow.
-const NEARLY_ALL: f64 = 0.98;
 
 /// Adds the findings, in the order of the model's parts. Returns the outputs that have no value at some inputs because of
 /// a formula.
@@ -204,7 +201,7 @@ fn constant(input: &Variable, one: &Degrees<'_>, all: &[Degrees<'_>]) -> Option<
         let x = |step: u32| input.low + (input.high - input.low) * (f64::from(step) / 2000.0);
         let is_between =
             |degree: f64| degree > EQUAL_TOLERANCE && degree < one.most - EQUAL_TOLERANCE;
-        if share < NEARLY_ALL || !(0..=2000).any(|step| is_between(one.term.membership(x(step)))) {
+        if !(0..=2000).any(|step| is_between(one.term.membership(x(step)))) {
             return None;
         }
         let message = format!(

@@ -11,13 +11,13 @@ use crate::{
 /// The firing strengths at which each term is evaluated. The centroid of a cut set depends on the height of the cut.
 const STRENGTHS: [f64; 7] = [1.0, 0.9, 0.75, 0.5, 0.25, 0.1, 0.01];
 
-/// Returns the smallest and the largest value of an output if only one consequent of its rules is active, for any
-/// inputs.
+/// Returns the smallest and the largest value of an output if only one consequent of its rules is active, at any firing
+/// strength.
 ///
 /// If the terms form a partition, several active consequents give a value between these two; otherwise the value may
 /// exceed them slightly. The value for inputs at which no rule fires is included. `None` if the model does not compile,
-/// has no such output or no rule for it, or if values are unbounded: for linear terms and formulas, the weighted sum,
-/// and Tsukamoto outputs.
+/// has no such output or no rule for it, if type-2 terms affect the output, or if values are unbounded: for linear
+/// terms and formulas, the weighted sum, and Tsukamoto outputs.
 ///
 /// # Example: the centroid of the last term differs from the end of the range
 /// ```
@@ -50,8 +50,9 @@ pub fn extent(model: &Model, output: &str) -> Option<(f64, f64)> {
         | Defuzzifier::WeightedAverage => {}
     }
     let concluded = |term: &str| {
-        let consequents = model.rules.iter().flat_map(|rule| &rule.rule.consequents);
-        consequents
+        let rules = model.rules.iter().filter(|rule| model.is_enabled(rule));
+        rules
+            .flat_map(|rule| &rule.rule.consequents)
             .filter(|c| c.output.text == output)
             .any(|c| c.term.text == term)
     };

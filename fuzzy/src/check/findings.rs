@@ -24,7 +24,7 @@ use crate::{
     rule::{Condition, Consequent, Rule},
 };
 
-/// The maximum number of boxes that a finding lists; further boxes are only counted.
+/// The maximum number of gaps with a finding of their own; one more finding counts the other gaps.
 const MAX_LISTED_BOXES: usize = 10;
 
 /// Returns all diagnostics of a report, including those that the author accepts. `spans` contains the positions of the
@@ -314,7 +314,7 @@ impl ModelPositions<'_> {
             .help("first add the rules that the other findings name")
     }
 
-    /// Whether the rules of a region exist, but never fire, which is reported on its own.
+    /// Returns whether the rules that would cover a region exist but never fire. Such rules are reported separately.
     fn is_of_never_firing_rules(&self, region: &UncoveredRegion, report: &Report) -> bool {
         let is_of = |rule: &usize, antecedents: &[Antecedent]| {
             let Some(rule) = self.model.rules.get(*rule).map(|rule| &rule.rule) else {
@@ -514,7 +514,8 @@ impl ModelPositions<'_> {
         Some(Diagnostic::note("narrow-reach", here, message).help(help))
     }
 
-    /// Whether rules for an output never fire, contradict each other, or leave out a term, which is reported on its own.
+    /// Returns whether rules for an output never fire, contradict each other, or leave out a term. Each of these has a
+    /// finding of its own.
     fn has_ineffective_rules(&self, output: &str, report: &Report) -> bool {
         let concludes = |rule: &usize| {
             let rule = self.model.rules.get(*rule);
@@ -529,7 +530,7 @@ impl ModelPositions<'_> {
             || report.contradictions.iter().any(|one| one.output == output)
     }
 
-    /// Reports a Takagi-Sugeno output that takes values outside its range.
+    /// Reports a Takagi-Sugeno or Tsukamoto output that takes values outside its range.
     fn outside(&self, one: &Reach) -> Diagnostic {
         let [low, high] = one.range;
         let message = format!(
@@ -541,7 +542,7 @@ impl ModelPositions<'_> {
             shown(high)
         );
         Diagnostic::warning("output-outside-range", self.name(&one.output), message)
-            .help("widen the range, or change the constants and coefficients of its terms")
+            .help("widen the range, or change the terms of the output")
     }
 
     fn against_trend(&self, one: &AgainstTrend) -> Diagnostic {

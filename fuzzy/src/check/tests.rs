@@ -136,7 +136,7 @@ fn findings_of_the_papers_rules() {
         .map(|all| all.iter().map(|one| one.term.as_str()).collect())
         .collect();
     assert_eq!(missing, [["very_low", "low"], ["low", "low"]]);
-    // Only on the line spread = 0 does no rule fire at all.
+    // The only region in which no rule fires at all is a part of the line spread = 0.
     let silent: Vec<&UncoveredRegion> = report.uncovered.iter().filter(|one| one.silent).collect();
     assert_eq!(silent.len(), 1);
     assert_eq!(
@@ -285,7 +285,7 @@ fn rules_are_compared_with_each_other() {
         .collect();
     assert_eq!(pairs, [(0, 1)]);
     let pairs: Vec<_> = report.subsumed.iter().map(|s| (s.rule, s.by)).collect();
-    // The last rule is more general than the one before it, but weaker.
+    // The last rule is more general than the one before it, but has a smaller weight.
     assert_eq!(pairs, [(0, 2), (4, 3)]);
 }
 
@@ -566,8 +566,8 @@ fn a_sugeno_output_beyond_its_range_is_found() {
 
 #[test]
 fn a_gap_is_reported_once() {
-    // No term covers 3 to 5. The regions there in which no rule fires, or rules fire only weakly, are not reported in
-    // addition.
+    // No term covers 3 to 5. The regions around this gap in which no rule fires, or rules fire only weakly, are not
+    // reported separately.
     let said = findings_of(
         "fuzzy: 1\nname: a\ninputs: {x: {range: [0, 8], terms: {low: {left_shoulder: [1, 3]}, \
          high: {right_shoulder: [5, 7]}}}}\n\
@@ -576,8 +576,8 @@ fn a_gap_is_reported_once() {
     );
     assert_eq!(said.len(), 1, "{said:?}");
     assert!(said[0].contains("`x` has no term from 3 to 5"), "{said:?}");
-    // A missing rule is one finding. The unused term and the region in which no rule fires are not reported in
-    // addition.
+    // A missing rule is one finding. The unused term and the region in which no rule fires are not reported
+    // separately.
     let said = findings_of(
         "fuzzy: 1\nname: a\ninputs: {x: {range: [0, 1], partition: [low, medium, high]}}\n\
          outputs: {z: {range: [0, 1], defuzzifier: weighted_average, terms: {a: {constant: 0}, b: {constant: 1}}}}\n\
@@ -626,8 +626,7 @@ fn reach_of(output: &str) -> Vec<String> {
 fn an_outer_term_that_is_never_reached_is_a_warning_with_both_remedies() {
     let reported = reach_of("{range: [0, 40], partition: [off, short, medium, long]}");
     insta::assert_snapshot!(reported.join("\n"));
-    // A missing rule is reported once. The unused term and the region in which no rule fires are not reported in
-    // addition.
+    // With either of the suggested changes, the output reaches the peaks of both outer terms, so there is no finding.
     for remedy in [
         "{range: [-7.69, 47.69], partition: {off: 0, short: 13.3333, medium: 26.6667, long: 40}}",
         "{range: [0, 40], terms: {off: {constant: 0}, short: {constant: 13.3333}, medium: {constant: 26.6667}, long: {constant: 40}}, \
@@ -645,9 +644,9 @@ fn each_cause_of_an_unreached_outer_term_has_its_own_message() {
         // A wider range has no effect on a set that ends where the old range ends.
         "{range: [0, 40], terms: {off: {triangle: [0, 0, 10]}, short: {triangle: [5, 10, 15]}, medium: {triangle: [15, 20, 25]}, long: {triangle: [25, 30, 35]}}}",
         "{range: [0, 40], terms: {off: {gaussian: {mean: 0, sd: 4}}, short: {gaussian: {mean: 10, sd: 4}}, medium: {gaussian: {mean: 25, sd: 4}}, long: {gaussian: {mean: 40, sd: 4}}}, defuzzifier: bisector}",
-        // The terms are inside the range, and its ends are never reached: only a note.
-        "{range: [0, 40], terms: {off: {triangle: [0, 5, 10]}, short: {triangle: [10, 15, 20]}, medium: {triangle: [20, 25, 30]}, long: {triangle: [30, 35, 40]}}}",
         // The terms are inside the range, so the output never reaches the ends of the range. This is only a note.
+        "{range: [0, 40], terms: {off: {triangle: [0, 5, 10]}, short: {triangle: [10, 15, 20]}, medium: {triangle: [20, 25, 30]}, long: {triangle: [30, 35, 40]}}}",
+        // All numbers are below the upper end of the range, so the output never reaches it. This is only a note, too.
         "{range: [0, 40], terms: {off: {constant: 0}, short: {constant: 10}, medium: {constant: 20}, long: {constant: 30}}, defuzzifier: weighted_average}",
         // These cases have no finding: a plateau, the mean of maxima, singletons.
         "{range: [0, 40], partition: {off: 6, short: 12, medium: 24, long: 34}}",

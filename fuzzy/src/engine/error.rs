@@ -14,12 +14,20 @@ pub enum EvaluateError {
         /// The number of values.
         got: usize,
     },
-    /// The number of outcomes differs from the number of outputs.
+    /// The number of outcomes that the caller passed differs from the number of outputs; for a batch, from the number of
+    /// outputs of all rows.
     WrongNumberOfOutputs {
-        /// The number of outputs of the model.
+        /// The number of outputs.
         expected: usize,
         /// The number of outcomes that the caller passed.
         got: usize,
+    },
+    /// The model has no output with the given index.
+    UnknownOutput {
+        /// The unknown index, from 0.
+        index: usize,
+        /// The number of outputs of the model.
+        outputs: usize,
     },
     /// The columns of a batch have different lengths.
     ColumnsOfDifferentLengths {
@@ -91,8 +99,15 @@ impl fmt::Display for EvaluateError {
                 )
             }
             EvaluateError::WrongNumberOfOutputs { expected, got } => {
-                let (outputs, room) = (counted(*expected, "output"), counted(*got, "outcome"));
-                write!(f, "the model has {outputs}, but there is room for {room}")
+                let outcomes = counted(*expected, "outcome");
+                write!(f, "there must be room for {outcomes}, not for {got}")
+            }
+            EvaluateError::UnknownOutput { index, outputs } => {
+                let outputs = counted(*outputs, "output");
+                write!(
+                    f,
+                    "there is no output with index {index}: the model has {outputs}"
+                )
             }
             EvaluateError::ColumnsOfDifferentLengths { first, other } => {
                 write!(f, "a column has {other} values where the first has {first}")

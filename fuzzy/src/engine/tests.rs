@@ -132,7 +132,7 @@ fn wrong_numbers_of_inputs_are_refused() {
             .evaluate_with(&mut engine.scratch(), &[1.0], &mut [])
             .unwrap_err()
             .to_string(),
-        "the model has 1 output, but there is room for 0 outcomes"
+        "there must be room for 1 outcome, not for 0"
     );
 }
 

@@ -11,7 +11,7 @@ use crate::{
 };
 
 const NAME: &str = "name";
-/// The keys of a variable whose value has an entry per term.
+/// The keys of a variable under which each term has an entry.
 const TERMS: [&str; 2] = ["terms", "steps"];
 
 /// Replaces lists of named entries by mappings, which the reader supports. An entry without a name is reported and

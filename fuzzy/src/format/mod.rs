@@ -1,6 +1,6 @@
 //! The file format of rule sets, version 1: conversion between [`Model`]s and trees.
 //!
-//! There is only this reader for all text formats: `yaml::parse` passes it a tree with positions, serde a tree without
+//! This is the only reader for all text formats: `yaml::parse` passes it a tree with positions, serde a tree without
 //! them. `docs/rule-sets.md` documents the keys.
 
 use alloc::{format, string::String, vec::Vec};
@@ -81,7 +81,7 @@ fn read_lacking(
     let mut findings = Vec::new();
     let mut spans = Spans::default();
     let tree = lists::to_mappings(tree, &mut findings);
-    // An entry without a name may be the variable that a rule names.
+    // Rules may use the name that an entry lacks, so unknown names in rules are not reported in this case.
     spans.names_unread = !findings.is_empty();
     let model = model(&tree, &mut spans, &mut findings);
     if let Some(model) = &model {
@@ -115,7 +115,7 @@ pub struct PartialModel {
     pub names_unread: bool,
 }
 
-/// Reads as much of a model as possible from a tree; `None` if there are no inputs and outputs.
+/// Reads as much of a model as possible from a tree; `None` if its inputs or its outputs cannot be read at all.
 #[doc(hidden)]
 pub fn read_partly(tree: &Node) -> Option<PartialModel> {
     let mut spans = Spans::default();
@@ -298,7 +298,8 @@ fn outdented(fields: &Fields<'_>) -> Option<Diagnostic> {
     Some(Diagnostic::error("unknown-key", stray.key_span.clone(), message).help(help))
 }
 
-/// Returns a finding for a file that begins with `key: 1` for another key than `fuzzy`, as files of another kind do.
+/// Returns a finding for a file that begins with `key: 1` and an unknown key in place of `fuzzy`, as files of other kinds
+/// do.
 fn other_first_key(fields: &Fields<'_>) -> Option<Diagnostic> {
     let first = fields.entries().first()?;
     let is_version = first.value.as_number_text() == Some("1");
@@ -316,7 +317,7 @@ fn other_first_key(fields: &Fields<'_>) -> Option<Diagnostic> {
     Some(finding.help("write `fuzzy: 1` instead"))
 }
 
-/// Returns a finding if the outputs are below `inputs`, because `outputs:` is missing above them or both were exchanged.
+/// Returns a finding if the outputs are below `inputs`, because `outputs:` is missing above them or the keys are swapped.
 fn outputs_among_inputs(fields: &Fields<'_>) -> Option<Diagnostic> {
     let variables = |key: &str| match fields.get(key).map(|node| &node.value) {
         Some(Value::Mapping(pairs)) => pairs.as_slice(),

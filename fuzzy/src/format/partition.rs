@@ -179,7 +179,7 @@ fn falling(what: &str, peaks: &[(Entry<'_>, f64)], findings: &mut Vec<Diagnostic
     }
 }
 
-/// Returns whether ascending peaks of a partition are distinct and in the range.
+/// Reports ascending peaks of a partition that are equal or outside the range. Returns true if all peaks are valid.
 fn rising(
     what: &str,
     names: &[(&str, &Node)],

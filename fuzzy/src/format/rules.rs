@@ -39,7 +39,7 @@ pub(super) fn read(
         }));
         return None;
     };
-    // The positions of terms are found by sampling, so the names are collected only for the first syntax error.
+    // The peaks of many shapes are found by sampling, so the names are collected only if a rule has a syntax error.
     let names = OnceCell::new();
     let known = || {
         let (inputs, outputs) = names.get_or_init(|| {

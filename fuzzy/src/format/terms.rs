@@ -87,8 +87,8 @@ pub(super) fn terms(
     }
 }
 
-/// Notes terms that are written from right to left: their shoulders or the signs of their slopes may be exchanged. Trees
-/// of formats that sort keys have no positions, and are not examined.
+/// Returns a note if terms are written from right to left, because their shoulders or the signs of their slopes may be
+/// exchanged. The caller omits trees without positions, because their formats may sort keys.
 fn reversed(what: &str, variable: &Variable, spans: &VariableSpans) -> Option<Diagnostic> {
     const FEWEST: usize = 3;
     let shapes = || variable.terms.iter().map(|term| &term.membership_function);

@@ -418,7 +418,7 @@ fn variable(
     (variable, spans)
 }
 
-/// Improves the suggestions for unknown keys of a variable whose value does not suit the key that is meant.
+/// Improves the suggestion for an unknown key of a variable if the key that was probably meant does not accept the value.
 fn refine(fields: &Fields<'_>, findings: &mut [Diagnostic]) {
     for entry in fields.unknown() {
         let is_meant = |key| !foreign::equivalents(entry.key, [key]).is_empty();

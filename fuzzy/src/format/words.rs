@@ -61,7 +61,7 @@ pub fn word_of_or(or: Disjunction) -> &'static str {
     word_of(&DISJUNCTIONS, or)
 }
 
-/// Reads operators from some of the keys; omitted operators are taken from `otherwise`.
+/// Reads a mapping of operators that may contain only `keys`; omitted operators are taken from `otherwise`.
 pub(super) fn operators(
     node: &Node,
     what: &str,

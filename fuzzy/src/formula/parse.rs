@@ -108,8 +108,8 @@ enum FormulaMistakeKind<'a> {
 }
 
 impl<'a> ParseError<&'a str> for FormulaMistake<'a> {
-    // nom's own parsers are used here only where they may fail, and their errors are always replaced by a more specific
-    // one.
+    // nom's own parsers are used only for numbers, where they either match or are optional, so this error is never
+    // reported.
     fn from_error_kind(rest: &'a str, _: ErrorKind) -> Self {
         FormulaMistake {
             rest,

@@ -92,7 +92,7 @@ fn functions_are_those_of_the_standard_library() {
             "{name}: {found} {expected}"
         );
     }
-    // All functions are tested above.
+    // Verifies that the tests above contain every function except `max` and `min`.
     for (operation, word, _) in Operation::ALL {
         if operation.binds().is_none() && !["max", "min"].contains(word) {
             assert!(include_str!("tests.rs").contains(&alloc::format!("(\"{word}(")));

@@ -159,9 +159,9 @@ impl DecisionMap {
             });
         }
         let Some(name) = engine.output_names().nth(output) else {
-            return Err(EvaluateError::WrongNumberOfOutputs {
-                expected: engine.output_names().len(),
-                got: output,
+            return Err(EvaluateError::UnknownOutput {
+                index: output,
+                outputs: engine.output_names().len(),
             });
         };
         if grid.cells() > MAX_CELLS {

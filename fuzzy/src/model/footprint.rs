@@ -195,7 +195,7 @@ pub(crate) fn uncertain_gaussian(
     );
     let Ok(formula) = text.parse::<Formula>() else {
         return Err(NoFootprint::Unsupported(format!(
-            "a variable named `{variable}` has no formula"
+            "a Gaussian over the variable `{variable}`"
         )));
     };
     Ok((upper, normal(F::Function { formula })))

@@ -126,7 +126,8 @@ pub struct Output {
     pub when_no_rule_fires: NoRuleFires,
     /// The aggregation, which combines the consequents of this output; `None` uses the aggregation of the rule set.
     pub aggregation: Option<Aggregation>,
-    /// Whether a value outside the range is clamped to it. Only Takagi-Sugeno outputs can leave their range.
+    /// Whether a value outside the range is clamped to it. Only Takagi-Sugeno and Tsukamoto outputs can leave their
+    /// range.
     pub clamp: bool,
     /// The type reduction of an output that interval type-2 terms affect.
     pub type_reduction: TypeReduction,

@@ -101,8 +101,8 @@ pub(super) enum RuleMistakeKind<'a> {
 }
 
 impl<'a> ParseError<&'a str> for RuleMistake<'a> {
-    // nom's own parsers are used here only where they may fail, and their errors are always replaced by a more specific
-    // one.
+    // nom's own parsers fail only while white space and comments are skipped. These errors end the skipping and are never
+    // reported.
     fn from_error_kind(rest: &'a str, _: ErrorKind) -> Self {
         RuleMistake {
             rest,

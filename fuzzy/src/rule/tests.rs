@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// Returns the condition that a variable is a term, such as `x IS low`.
+/// Returns a condition such as `x IS low`, or `x IS very low` with hedges.
 fn is(variable: &str, hedges: &[Hedge], term: &str) -> Condition {
     Condition::Is(Proposition {
         variable: variable.into(),

@@ -13,7 +13,7 @@ pub(crate) struct ShapeForm {
     /// A description for the schema.
     #[cfg_attr(
         not(feature = "serde"),
-        allow(dead_code, reason = "only the schema tells it")
+        allow(dead_code, reason = "only the schema contains it")
     )]
     pub(crate) about: &'static str,
     /// Builds the shape from values; `None` if their number is wrong.

@@ -19,7 +19,7 @@ pub(super) fn gaussian(x: f64, mean: f64, sd: f64) -> f64 {
 
 #[inline(always)]
 pub(super) fn sigmoid(x: f64, inflection: f64, slope: f64) -> f64 {
-    // The argument of the exponential is negative on both sides, so its value is at most 1.
+    // The argument of the exponential is at most 0 on both sides of the inflection, so `e` is at most 1.
     let t = slope * (x - inflection);
     let e = exp_of_minus(libm::fabs(t));
     let degree = select_unpredictable(t >= 0.0, 1.0, e) / (1.0 + e);

@@ -197,7 +197,7 @@ impl<'a> Chain<'a> {
                 "stages",
             )?;
             let mut of_model = indices.reads.iter().chain(indices.outputs);
-            require(of_model.all(is_output), "places")?;
+            require(of_model.all(is_output), "indices")?;
         }
         let first = self.first_conclusion();
         let conclusions = self.table.curves.get(first..).unwrap_or(&[]);
@@ -286,9 +286,9 @@ impl<'a> Chain<'a> {
     }
 
     /// Converts the index of a rule in evaluation order to its index in the model.
-    pub fn rule(&self, indices: usize) -> Option<usize> {
+    pub fn rule(&self, index: usize) -> Option<usize> {
         let rules = self.parts().flat_map(|(_, indices)| indices.rules);
-        rules.map(|rule| *rule as usize).nth(indices)
+        rules.map(|rule| *rule as usize).nth(index)
     }
 
     /// Returns those outputs without a closed form that other outputs read or that have the index `risk`.

@@ -168,7 +168,8 @@ pub struct Output {
     pub first_strength: u32,
     /// The index after the last firing strength.
     pub end_strength: u32,
-    /// 1 if a value outside the range is clamped to it, else 0. Only Takagi-Sugeno outputs can leave their range.
+    /// 1 if a value outside the range is clamped to it, else 0. Only Takagi-Sugeno and Tsukamoto outputs can
+    /// leave their range.
     pub clamps: u32,
     /// The code of the [`TypeReduction`]: 1 plus the index in [`TypeReduction::ALL`]. 0 if the value is not an interval,
     /// [`LOWER_BOUNDS`] if the output has only the lower bounds of the firing strengths of another output.

@@ -16,7 +16,7 @@ use crate::{
     foreign,
 };
 
-/// The known keys that the author probably meant by unknown keys. They are not reported as missing in addition.
+/// The suggestion for a comment that begins with `//`.
 const COMMENT: &str = "a comment begins with `#`, not with `//`";
 
 /// The suggestion for a file without a rule set around its rules.
@@ -32,10 +32,10 @@ pub struct Fields<'a> {
     /// The position at which missing keys are reported.
     place: Range<usize>,
     entries: Vec<Entry<'a>>,
-    /// The positions of the unknown keys that do not resemble any known key.
+    /// The known keys that the author probably meant by unknown keys. They are not reported as missing.
     meant: Vec<String>,
     unknown: Vec<&'a str>,
-    /// The positions of the unknown keys that resemble no known one.
+    /// The positions of the unknown keys that resemble no known key.
     unlike: Vec<Range<usize>>,
 }
 
@@ -95,7 +95,7 @@ impl<'a> Fields<'a> {
         self.meant.iter().any(|meant| meant == key)
     }
 
-    /// Returns all keys, including unknown ones, with their values; of repeated keys only the first.
+    /// Returns all entries, including those with unknown keys; of a repeated key, only the first entry.
     #[must_use]
     pub fn entries(&self) -> &[Entry<'a>] {
         &self.entries

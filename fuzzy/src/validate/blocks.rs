@@ -31,7 +31,7 @@ impl Validator<'_> {
                 small if small < MIN_STRENGTH => format!(
                     "remove `least_strength`: the default {MIN_STRENGTH:e} excludes only firing strengths that are rounding errors"
                 ),
-                _ => "write a number from 0 to 1".into(),
+                _ => format!("write a number from {MIN_STRENGTH:e} to 1"),
             };
             self.error("value-outside-range", &spans.least_strength, message, &help);
         }

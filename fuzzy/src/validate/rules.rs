@@ -186,7 +186,7 @@ impl<'m> Validator<'m> {
         outputs.any(|o| o.variable.name == variable.name && o.defuzzifier.takes_numbers())
     }
 
-    /// Reports an unknown input. An output is suggested only if its name is similar.
+    /// Returns the finding for an unknown input. An output is suggested only if its name is similar.
     pub(super) fn unknown_input(&self, name: &str, span: &Range<usize>) -> Diagnostic {
         let inputs = self.inputs.keys().copied();
         match nearest(name, inputs.clone().chain(self.outputs.keys().copied())) {
@@ -278,7 +278,7 @@ impl<'m> Validator<'m> {
             let help = finding.help.unwrap_or_default();
             finding.help = Some(format!("a rule names a term, not a number: {help}"));
         }
-        // A term such as `very humid`, whose first word is parsed as a hedge.
+        // The term may be called `very humid`, of which the first word is parsed as a hedge.
         let has_hedges = !hedges.is_empty();
         let hedges = hedges.iter().map(|hedge| hedge.word());
         let words: Vec<&str> = hedges.chain([term.text.as_str()]).collect();
@@ -328,7 +328,7 @@ impl Validator<'_> {
             let (name, peak) = term.name.rsplit_once(signs)?;
             Some((name.trim_end_matches(signs), peak.parse::<f64>().ok()?))
         });
-        // Names such as `stage 1` and `stage 2` are plain names, and not names followed by a peak.
+        // In names such as `stage 1` and `stage 2`, the number is a part of the name and not a peak.
         let is_distinct = |peaks: &Vec<(&str, f64)>| {
             peaks
                 .iter()

@@ -47,7 +47,7 @@ impl Validator<'_> {
         }
     }
 
-    /// Requires that an output with lower membership functions is not weighted, and that each lower membership
+    /// Requires that a Takagi-Sugeno output has no lower membership functions, and that each lower membership
     /// function is a fuzzy set. If one membership function of a term is a singleton, both must be singletons at the
     /// same position.
     pub(super) fn bounds_are_sets(&mut self, what: &str, output: &Output, spans: &VariableSpans) {

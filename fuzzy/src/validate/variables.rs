@@ -239,8 +239,8 @@ impl Validator<'_> {
         }
     }
 
-    /// Requires that the terms of a Takagi-Sugeno output are numbers or linear functions, and that the terms of a
-    /// Mamdani output are fuzzy sets.
+    /// Requires that the terms of a Takagi-Sugeno output are numbers, linear functions or formulas, that those of a
+    /// Tsukamoto output are monotone, and that those of a Mamdani output are fuzzy sets.
     pub(super) fn consequents_fit(&mut self, what: &str, output: &Output, spans: &VariableSpans) {
         let weighted = output.defuzzifier.takes_numbers();
         let tsukamoto = output.defuzzifier == Defuzzifier::Tsukamoto;

@@ -1,4 +1,4 @@
-//! Reasons why a text is not YAML: an unresolved merge conflict, marks of a program at the start of each line, comments of
+//! Reasons why a text is not YAML: an unresolved merge conflict, `+` or a number at the start of each line, comments of
 //! another language, spaces that YAML does not allow, an open quote, or a missing colon or space after a colon.
 
 use alloc::{format, string::String, vec::Vec};
@@ -11,8 +11,9 @@ use super::{
 };
 use crate::{diagnostic::Diagnostic, format::is_key_of_variable};
 
-/// Returns a finding if a text has an unresolved merge conflict, is in another format, is indented with spaces that YAML
-/// does not allow, or has comments that begin with `//`. Call this only for texts that could not be parsed.
+/// Returns a finding if a text has an unresolved merge conflict, is in another format, has `+` or a number at the start of
+/// each line, is indented with spaces that YAML does not allow, or has comments that begin with `//`. Call this only for
+/// texts that could not be parsed.
 pub(super) fn cause(text: &str) -> Option<Diagnostic> {
     let lines = lines(text);
     let syntax = |at: usize, length: usize, message: &str, help: &str| {
@@ -88,8 +89,8 @@ fn marked(lines: &[(usize, &str)]) -> Option<Diagnostic> {
     Some(Diagnostic::error("yaml-syntax", start..start + 1, message).help(help))
 }
 
-/// Explains a syntax error by a key without a space after its colon, or without a colon, in the same line or in the
-/// line before it.
+/// Returns a more specific finding for a syntax error, from the line in which it was detected and the lines above it: for
+/// example a key without a colon, or a colon without a space after it.
 pub(super) fn line(text: &str, error: &SyntaxError) -> Option<Diagnostic> {
     let finding = &error.finding;
     if matches!(
@@ -159,7 +160,7 @@ pub(super) fn line(text: &str, error: &SyntaxError) -> Option<Diagnostic> {
     }
 }
 
-/// Returns a finding for a line of a rule that is not indented, or that begins with `-` without a space.
+/// Returns a finding for a line that begins with `-` without a space, or that continues a rule but is not indented.
 fn of_rules(text: &str, start: usize) -> Option<Diagnostic> {
     let (at, content) = content_at(text, start)?;
     let first = content.split(' ').next().unwrap_or("");

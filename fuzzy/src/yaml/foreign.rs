@@ -1,5 +1,5 @@
-//! Recognition of files of other kinds, and of files of other programs, that were passed instead of a rule set. They
-//! are recognised by their first lines.
+//! Recognition of files of other kinds or programs that were passed instead of a rule set. Most of them are recognised
+//! by their first lines.
 
 use alloc::{format, string::String, vec::Vec};
 

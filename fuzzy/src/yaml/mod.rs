@@ -34,8 +34,8 @@ pub const LARGEST_BYTES: usize = 4_000_000;
 /// The maximum nesting depth of lists and mappings; deeper nesting is an error.
 const DEEPEST: usize = 64;
 
-/// The maximum number of values that aliases may add to a document; more is an error. 16 bytes of text count as one
-/// value.
+/// The maximum number of values that aliases may add to a document; more is an error. A scalar counts as one value for
+/// itself and one for every 16 bytes of its text.
 const MAX_FROM_ALIASES: usize = 100_000;
 
 /// Parses one YAML document to a tree. It is public for the crate `flagred`, which parses its profiles with it; not

@@ -123,7 +123,7 @@ fn quotes(text: &str, at: usize, kind: &ErrorKind) -> Option<Diagnostic> {
     }
 }
 
-/// Returns the finding for a bracket that is not closed, or closed by another one.
+/// Returns the finding for a bracket that is not closed, or that is closed by a bracket of the other kind.
 fn brackets(text: &str, at: usize, kind: &ErrorKind) -> Option<Diagnostic> {
     let in_brackets = matches!(
         kind,

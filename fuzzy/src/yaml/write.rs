@@ -15,7 +15,7 @@ pub fn to_text(node: &Node) -> String {
     text
 }
 
-/// Writes the tree on one line, as the value of a key.
+/// Formats the tree on one line, as the value of a key.
 #[must_use]
 pub fn to_line(node: &Node) -> String {
     let mut line = String::new();
@@ -58,7 +58,7 @@ fn nested(out: &mut String, node: &Node, indent: usize, deeper: usize) {
         Value::List(items) => items.is_empty(),
         Value::Mapping(entries) => entries.is_empty(),
     };
-    // The top level of a file is always a block, as people expect of a rule set.
+    // The values of top-level keys are written as blocks, as readers expect of a rule set, except lists of numbers.
     let fits =
         indent > 0 || matches!(&node.value, Value::List(items) if items.iter().all(is_number));
     if is_leaf || (fits && indent + line.len() < LINE_WIDTH && !line.contains('\n')) {

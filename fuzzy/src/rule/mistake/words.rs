@@ -306,7 +306,7 @@ pub(super) fn sign(rest: &str) -> Option<String> {
     Some(format!("write `{word}` in place of `{found}`"))
 }
 
-/// Returns the token at this position as an author would quote it: a word, a quoted name, or an operator.
+/// Returns the token at this position, as messages quote it: a word, a name with its quotes, or an operator.
 pub(super) fn found_here(rest: &str) -> &str {
     const LONGEST: usize = 40;
     let end = |in_it: fn(char) -> bool| {
@@ -337,7 +337,7 @@ pub(super) fn found_here(rest: &str) -> &str {
     rest.get(..length).unwrap_or(rest)
 }
 
-/// Returns the input of the last condition of a text, such as `x` for `IF x IS low OR`.
+/// Returns the variable of the last condition or conclusion of a text, such as `x` for `IF x IS low OR`.
 pub(super) fn last_input(before: &str) -> Option<&str> {
     let words = before.split_whitespace().rev();
     let mut owners = words.clone().zip(words.skip(1));
