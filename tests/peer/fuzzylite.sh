@@ -4,7 +4,7 @@ set -eu
 cd "$(dirname "$0")/../.."
 venv=target/fuzzylite
 if [ ! -x "$venv/bin/pip" ] && ! python3 -m venv "$venv"; then
-  echo "fuzzylite was not asked: it takes python3 with venv (Debian: apt-get install python3-venv)" >&2
+  echo "the comparison with fuzzylite was skipped: it requires python3 with venv (Debian: apt-get install python3-venv)" >&2
   exit 3
 fi
 "$venv/bin/pip" install --quiet "numpy<2" "pyfuzzylite==8.0.6"

@@ -4,7 +4,7 @@ set -eu
 cd "$(dirname "$0")/../.."
 venv=target/mpmath
 if [ ! -x "$venv/bin/pip" ] && ! python3 -m venv "$venv"; then
-  echo "mpmath was not asked: it takes python3 with venv (Debian: apt-get install python3-venv)" >&2
+  echo "the comparison with mpmath was skipped: it requires python3 with venv (Debian: apt-get install python3-venv)" >&2
   exit 3
 fi
 "$venv/bin/pip" install --quiet "mpmath==1.4.1" "gmpy2==2.3.2"

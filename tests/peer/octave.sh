@@ -4,7 +4,7 @@
 set -eu
 cd "$(dirname "$0")/../.."
 if ! octave-cli --quiet --eval 'pkg load fuzzy-logic-toolkit' > /dev/null 2>&1; then
-  echo "Octave was not asked: it takes octave with the fuzzy-logic-toolkit" >&2
+  echo "the comparison with Octave was skipped: it requires octave with the fuzzy-logic-toolkit" >&2
   exit 3
 fi
 cargo test -p flagred-tests --test peers octave -- --ignored

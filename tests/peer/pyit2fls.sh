@@ -4,7 +4,7 @@ set -eu
 cd "$(dirname "$0")/../.."
 venv=target/pyit2fls
 if [ ! -x "$venv/bin/pip" ] && ! python3 -m venv "$venv"; then
-  echo "PyIT2FLS was not asked: it takes python3 with venv (Debian: apt-get install python3-venv)" >&2
+  echo "the comparison with PyIT2FLS was skipped: it requires python3 with venv (Debian: apt-get install python3-venv)" >&2
   exit 3
 fi
 "$venv/bin/pip" install --quiet "pyit2fls==0.9.0"

@@ -5,7 +5,7 @@ set -eu
 cd "$(dirname "$0")/../.."
 venv=target/pymavlink
 if [ ! -x "$venv/bin/pip" ] && ! python3 -m venv "$venv"; then
-  echo "pymavlink was not asked: it takes python3 with venv (Debian: apt-get install python3-venv)" >&2
+  echo "the comparison with pymavlink was skipped: it requires python3 with venv (Debian: apt-get install python3-venv)" >&2
   exit 3
 fi
 "$venv/bin/pip" install --quiet "pymavlink>=2.4"

@@ -34,7 +34,7 @@ pub(crate) struct AssessmentData {
     flight: Py<FlightData>,
     loaded: Arc<Loaded>,
     step_s: Option<f64>,
-    /// A column as numbers, where NaN means unknown.
+    /// Whether the intervals of the risk are computed.
     with_intervals: bool,
     /// The flight and its assessment; after unpickling, created again at the first use.
     subject: OnceLock<Arc<Subject>>,

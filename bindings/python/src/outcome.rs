@@ -133,11 +133,11 @@ impl From<engine::Outcome> for Outcome {
 /// The outcomes of one output at many points, as arrays.
 #[pyclass(frozen, get_all, module = "flagred.types")]
 pub(crate) struct Outcomes {
-    /// The lower ends of the intervals if the output depends on type-2 terms; otherwise the values themselves.
+    /// The values; NaN if unknown.
     value: Py<PyArrayDyn<f64>>,
-    /// The upper ends of the intervals if the output depends on type-2 terms; otherwise the values themselves.
+    /// The lower ends of the intervals if the output depends on type-2 terms; otherwise the values themselves.
     low: Py<PyArrayDyn<f64>>,
-    /// The upper ends of the intervals of an output that depends on type-2 terms; otherwise the values.
+    /// The upper ends of the intervals if the output depends on type-2 terms; otherwise the values themselves.
     high: Py<PyArrayDyn<f64>>,
     /// The largest firing strength of a rule, in [0, 1].
     coverage: Py<PyArrayDyn<f64>>,

@@ -20,7 +20,7 @@ rules:
   - IF service IS excellent OR food IS delicious THEN tip IS high
 """
 
-# Two outputs, a gap in the middle, an output with a default, a row that must fire.
+# Two outputs and a gap between the rules, in which `lamp` has a default and `speed` has no value.
 GAPS = """\
 fuzzy: 1
 name: gaps

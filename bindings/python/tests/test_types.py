@@ -51,7 +51,7 @@ assert_type(term(array), NDArray[np.float64])
 def test_overloads(tmp_path):
     program = tmp_path / "program.py"
     program.write_text(PROGRAM.replace("typing import assert_type", "typing_extensions import assert_type"))
-    # A package that is not installed is searched where it was imported from.
+    # If the package is not installed, mypy searches for it where Python found it.
     package = pathlib.Path(flagred.__file__).parent.parent
     environment = {**os.environ, **({} if package.name == "site-packages" else {"MYPYPATH": str(package)})}
     arguments = ["--strict", "--cache-dir", tmp_path / "cache", program]

@@ -6,10 +6,10 @@ use serde::Serialize;
 
 use crate::Examination;
 
-// The versions of the layouts increase when a name changes its meaning or is removed.
-/// The layout of [`CheckDocument`].
+// The version increases when a name in the document changes its meaning or is removed.
+/// The name and version of the layout of [`CheckDocument`].
 const CHECK: &str = "flagred.check/1";
-/// The layout of [`Explained`].
+/// The name and version of the layout of [`Explained`].
 const EXPLAIN: &str = "flagred.explain/1";
 
 /// The findings about a rule set or a profile: `flagred check --json`.

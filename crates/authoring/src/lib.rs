@@ -1,5 +1,5 @@
 //! Functions for an editor of rule sets and profiles, independent of the program that shows the text: findings, completion,
-//! descriptions of names, renaming, layout, adding and removing parts, changing ranges, units and terms, and changing numbers in place.
+//! descriptions of names, renaming, layout, adding and removing parts, and changing ranges, units, terms and numbers in place.
 //!
 //! It implements no protocol, opens no file and prints nothing. Positions are offsets in bytes, changes are [`Edit`]s.
 //! If a profile names the file of a rule set, the caller provides its text.

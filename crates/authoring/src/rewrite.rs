@@ -11,8 +11,8 @@ use fuzzy::{
 
 use crate::{Edit, edited, numbers};
 
-/// Returns `text` changed to the rule set `wanted`. If its entries can be changed, added and removed in place, all other lines are
-/// kept; otherwise the rule set is written anew, below the comments at the top of the text.
+/// Returns `text`, edited so that it describes the rule set `wanted`. If its entries can be changed, added and removed in
+/// place, all other lines are kept; otherwise the rule set is written anew, below the comments at the top of the text.
 ///
 /// ```
 /// let text = "fuzzy: 1

@@ -17,7 +17,7 @@ use crate::{
     names::check_name,
 };
 
-/// A part of a rule set that can be added or removed. Variables are counted with the inputs first, rules in the order of the text.
+/// A part of a rule set that can be added or removed. Variables are counted with the inputs first, and rules as in the text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
     /// An input or output.
@@ -651,7 +651,7 @@ fn widest_gap(places: &[f64], low: f64, high: f64) -> (usize, f64) {
     (at, shortened((from + to) / 2.0, high - low))
 }
 
-/// The position by which a term is placed when gaps between terms are measured: the mean of a Gaussian, otherwise the
+/// The position that represents a term when the gaps between terms are measured: the mean of a Gaussian, otherwise the
 /// average of the parameters.
 fn middle(shape: &MembershipFunction) -> Option<f64> {
     let numbers: Vec<f64> = shape
@@ -666,7 +666,7 @@ fn middle(shape: &MembershipFunction) -> Option<f64> {
     }
 }
 
-/// Rounds a number to about a thousandth of the width of a range.
+/// Rounds a number so that its last digit is worth between a thousandth and a hundredth of the width of a range.
 fn shortened(value: f64, width: f64) -> f64 {
     let digits = (2.0 - width.log10().floor()).clamp(0.0, 15.0) as usize;
     format!("{value:.digits$}").parse().unwrap_or(value)

@@ -28,7 +28,7 @@ use crate::{
 pub use similar::SHAPES;
 use similar::similar;
 
-/// A term as a form shows it.
+/// A term as shown in a form.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TermFields {
     /// The shape, such as `triangle`; `peak` in a partition and `limit` in `steps`.
@@ -37,7 +37,8 @@ pub struct TermFields {
     pub parameters: String,
     /// The names of the parameters; empty for shapes without a fixed number of them.
     pub names: Vec<&'static str>,
-    /// Whether [`set_parameters`] can change the term. An interval type-2 term and the last term of `steps` are edited as text.
+    /// Whether [`set_parameters`] can change the term. An interval type-2 term and the last term of `steps` can be
+    /// edited only as text.
     pub is_editable: bool,
     /// Whether [`set_shape`] can change the term.
     pub can_change_shape: bool,

@@ -102,7 +102,7 @@ pub(crate) fn air_from_commands(
     };
     let first_s = flight.commands.t_s().first().copied().unwrap_or_default();
     let running = |row: &[f64], _| row.iter().any(|&raw| raw > range.low + 1.0);
-    // A motor whose command is unknown may be running, so it does not end a flight.
+    // A motor whose command is unknown may be running, so an unknown command does not end a flight.
     let flying = |row: &[f64], before: bool| {
         let known: Vec<f64> = row.iter().filter_map(|&raw| flight.command(raw)).collect();
         known.iter().sum::<f64>() > 0.2 * known.len() as f64 || before && known.len() < row.len()

@@ -140,7 +140,7 @@ impl Clock {
             .is_none_or(|last_s| (BACK_S..=self.longest_s).contains(&(t_s - last_s)))
     }
 
-    /// Whether the maximum number of boots was exceeded.
+    /// Whether the maximum number of boots was reached.
     pub(crate) fn is_full(&self) -> bool {
         self.boots_s.len() >= MAX_BOOTS
     }

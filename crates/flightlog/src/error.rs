@@ -56,7 +56,7 @@ pub enum ReadError {
         path: String,
         /// The contradiction.
         problem: String,
-        /// What to do.
+        /// Advice on what to do.
         help: &'static str,
     },
     /// A flight CSV has columns or header values that cannot be used.
@@ -68,7 +68,7 @@ pub enum ReadError {
         line: u64,
         /// The problem in that line.
         problem: String,
-        /// What to do.
+        /// Advice on what to do.
         help: String,
     },
 }

@@ -35,7 +35,7 @@ pub enum Gap {
         /// The source of the kind.
         from: String,
     },
-    /// The log ends after its head.
+    /// The log ends after its header.
     #[error("the log contains no messages")]
     NoMessages,
     /// No output is known to drive a motor.

@@ -56,8 +56,8 @@ pub(crate) fn keep(text: &str, model: &mut Model, spans: &Spans) {
     }
 }
 
-/// The text of a comment on one line, without comment marks and lines of dashes or similar characters, and without
-/// lines that programs generate about themselves.
+/// The text of a comment on one line, without comment marks, lines of dashes or similar characters, and generated lines
+/// such as `$Revision`.
 fn plain(comment: &str) -> String {
     let lines = comment
         .lines()

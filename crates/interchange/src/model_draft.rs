@@ -71,7 +71,7 @@ impl<'t> ModelDraft<'t> {
             .push(Diagnostic::warning(code, self.span(part), message).help(help));
     }
 
-    /// Notes a decision that the text does not specify.
+    /// Notes a decision about a point that the text leaves open.
     pub(crate) fn note(&mut self, code: &'static str, part: &str, message: String, help: &str) {
         self.findings
             .push(Diagnostic::note(code, self.span(part), message).help(help));
@@ -95,8 +95,8 @@ impl<'t> ModelDraft<'t> {
         parsed
     }
 
-    /// Whether the parameters of a shape, in numbers and in words, are finite where they must be; otherwise an error is
-    /// reported.
+    /// Whether the parameters of a shape, given as numbers and as words, are finite where they must be; otherwise an error
+    /// is reported.
     pub(crate) fn is_finite(&mut self, shape: Shape, numbers: &[f64], words: &[&str]) -> bool {
         let Some(index) = shapes::not_finite(shape, numbers) else {
             return true;

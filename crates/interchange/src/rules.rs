@@ -47,7 +47,7 @@ struct Reader<'r, 't, 'd> {
     words: &'r [&'r str],
     next: usize,
     depth: usize,
-    /// The end of the rule, as the location of something missing.
+    /// The end of the rule, where missing words are reported.
     end: &'r str,
 }
 

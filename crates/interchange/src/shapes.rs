@@ -183,7 +183,7 @@ pub(crate) fn parameters(format: Format, shape: Shape) -> String {
     names.collect::<Vec<_>>().join(" ")
 }
 
-/// All names of a format.
+/// The names of all shapes in a format; if a shape has alternative names, only the first.
 pub(crate) fn names(format: Format) -> impl Iterator<Item = &'static str> + Clone {
     SPELLINGS
         .iter()

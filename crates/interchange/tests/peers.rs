@@ -47,7 +47,7 @@ fn points(path: &Path) -> Vec<(Vec<f64>, Vec<f64>)> {
     lines.map(row).collect()
 }
 
-/// The largest difference from the points, in shares of the output's range.
+/// The largest difference from the points, as a share of the output's range.
 fn largest_difference(model: &Model, points: &[(Vec<f64>, Vec<f64>)]) -> f64 {
     let engine = Engine::new(model).unwrap_or_else(|findings| panic!("{findings}"));
     assert!(points.len() > 100);
@@ -157,7 +157,7 @@ fn as_fuzzylite(name: &str, model: &mut Model) {
 }
 
 /// Compares the FIS and FCL files that fuzzylite writes for its own models. Its FIS files lack some content of these
-/// models: inputs that rules take from outputs, the kind of a hybrid system, and hedges that Octave reads as cubes.
+/// models: conditions on outputs, the kind of a hybrid system, and hedges that Octave reads as cubes.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
 fn copies_of_fuzzylites_models_have_the_same_values() {

@@ -65,7 +65,7 @@ pub(crate) fn stretch(flight: &Flight) -> Stretch {
     let (start_s, end_s) = hull.or_else(|| flight.time_span_s()).unwrap_or((0.0, 1.0));
     Stretch {
         start_s,
-        end_s: end_s.max(start_s + 0.1),
+        end_s: end_s.max(start_s + SHORTEST_S),
     }
 }
 

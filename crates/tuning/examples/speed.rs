@@ -17,7 +17,7 @@ const INPUTS: [&str; 4] = ["a", "b", "c", "d"];
 const TERMS: [&str; 3] = ["low", "middle", "high"];
 const OUTPUTS: [&str; 5] = ["very_low", "low", "middle", "high", "very_high"];
 
-/// A rule for every combination of terms: the output term depends on the sum of the input terms.
+/// A model with a rule for every combination of terms: the output term depends on the sum of the indices of the input terms.
 fn model(middle: f64, outputs: [f64; 5]) -> Model {
     let mut model = Model::builder("speed");
     for name in INPUTS {

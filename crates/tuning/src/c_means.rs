@@ -32,7 +32,7 @@ impl Default for Settings {
 /// Clusters of rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Clusters {
-    /// The coordinates of each center, in ascending order.
+    /// The centers in ascending order, each as its coordinates.
     pub centers: Vec<Vec<f64>>,
     /// The degree of each row in each cluster; the degrees of a row sum to 1.
     pub degrees: Vec<Vec<f64>>,

@@ -98,8 +98,8 @@ pub(crate) fn fit(
     let (near, limits) = (limits(true), limits(beyond_range));
     let is_near = |(step, (low, high)): (&f64, &(f64, f64))| (*low..=*high).contains(step);
     // Rules that always fire together could get constants of any size, whose errors cancel only on
-    // these rows. A larger ridge keeps them within the width of the range. If that does not help,
-    // the rows require values outside the range, and only the limits apply.
+    // these rows. A larger ridge keeps them at most one width outside the range. If that does not
+    // help, the rows require such values, and only the limits apply.
     let mut ridge = RIDGE;
     let mut steps = solve(squares.clone(), &products, ridge);
     while ridge < LARGEST_RIDGE
@@ -282,7 +282,7 @@ impl Consequent {
         }
     }
 
-    /// The number of numbers that may change: the coefficients and the constant, or 0 if the consequent is fixed.
+    /// How many numbers may change: the coefficients and the constant, or 0 if the consequent is fixed.
     fn free(&self) -> usize {
         if self.moves {
             self.coefficients.len() + 1

@@ -37,5 +37,5 @@ from .errors import (
 )
 from .evaluation import evaluate as evaluate
 
-# What `help(flagred)` shows. The other names are described by the modules that it mentions.
+# The names that `help(flagred)` shows. The modules that it mentions describe the other names.
 __all__ = ["Model", "Monitor", "__version__", "assess", "load", "loads", "read_log", "types"]

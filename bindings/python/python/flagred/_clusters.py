@@ -26,7 +26,7 @@ class Clusters(NamedTuple):
     loss: float
     """The sum of squared distances to the centers, weighted by the degrees to the power of the fuzzifier."""
     iterations: int
-    """The iterations of the best start."""
+    """The number of iterations of the best start."""
 
     def partition(self, names: Sequence[str]) -> dict[str, float]:
         """The centers as the ``partition`` of an input: the peak of each term.
@@ -57,7 +57,7 @@ def c_means(
     Parameters
     ----------
     rows
-        Values, or a matrix with a row for each point. Columns count by their values: scale them if their units differ.
+        Values, or a matrix with a row for each point. Distances are not scaled: scale the columns if their units differ.
     clusters
         The number of clusters, at least 2.
     fuzzifier
@@ -65,9 +65,9 @@ def c_means(
     iterations
         The maximum number of iterations of a start.
     starts
-        The number of starts, each from other rows. The start with the lowest loss is the result.
+        The number of starts, each from different rows. The start with the lowest loss is the result.
     seed
-        The random seed of the rows that the search starts from.
+        The random seed for choosing the rows from which the search starts.
 
     Raises
     ------

@@ -20,7 +20,7 @@ class ConformalRegressor(RegressorMixin, MetaEstimatorMixin, BaseEstimator):  # 
 
     Part of the training rows is excluded from the fit. The errors on these calibration rows determine the width of the
     intervals: one width for all rows. An interval of 90 % contains the target of at least 90 % of new rows on average, if
-    new rows come from the same source as the training rows. This does not apply to a single kind of rows, or to unseen
+    new rows come from the same source as the training rows. This does not apply to rows of one kind alone, or to unseen
     vehicles unless ``groups`` are given.
 
     Parameters
@@ -110,7 +110,8 @@ class ConformalRegressor(RegressorMixin, MetaEstimatorMixin, BaseEstimator):  # 
             raise ValueError(f"coverage is {coverage}, but must be above 0 and below 1")
         predicted = self.predict(X)
         errors = len(self.errors_)
-        # With one more error, at least this share is not above the error of this rank.
+        # The error of a new row is equally likely to have any rank among `errors + 1`. With a probability of at least
+        # `coverage`, it is therefore at most the error of this rank.
         rank = math.ceil((errors + 1) * coverage)
         if rank > errors:
             needed = math.ceil(coverage / (1 - coverage))

@@ -26,7 +26,7 @@ class Vehicle(NamedTuple):
     """The number of motors, if the frame determines it."""
     firmware: str | None
     id: str | None
-    """An identifier of this vehicle among others of its kind."""
+    """An identifier that distinguishes this vehicle from others."""
     id_source: str | None
     """The source of the id, such as ``sys_uuid``."""
     system_id: int | None
@@ -114,7 +114,7 @@ class Report(NamedTuple):
     truncated: bool
     """Whether the log ends inside a message."""
     reason: str | None
-    """The reason of the first skipped data."""
+    """The first reason why data was skipped."""
     left_out: LeftOutCounts
 
     @property
@@ -124,7 +124,7 @@ class Report(NamedTuple):
 
 
 class Gap(NamedTuple):
-    """Missing data of a log, and what the pilot can do."""
+    """Information that is missing from a log, and advice for the pilot."""
 
     reason: str
     help: str | None
@@ -138,13 +138,13 @@ class MotorFinding(NamedTuple):
     or_number: int | None
     """Another motor that may be the cause, if the commands do not show which."""
     side: str
-    """The nearest limit: ``lower`` or ``upper``. Out of balance: below or above its share."""
+    """The nearest limit: ``lower`` or ``upper``. For a motor out of balance, ``lower`` is below its share."""
     margin_mean: float
     margin_min: float
 
 
 class Cause(NamedTuple):
-    """The cause of a risk: an input in a term, and the rule about it."""
+    """The cause of a risk: an input with its term and value, and the rule that reads it."""
 
     input: str
     term: str
@@ -183,7 +183,7 @@ class Finding(NamedTuple):
     text: str
     """What happened, and what it means."""
     advice: str
-    """What to do."""
+    """Advice on what to do."""
 
     def __str__(self) -> str:
         return f"{self.from_s:.1f} to {self.to_s:.1f} s: {self.text} {self.advice}"

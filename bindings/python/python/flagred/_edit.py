@@ -20,7 +20,7 @@ Document = dict[str, Any]
 
 
 def plain(value: Any) -> Any:
-    """Converts a value to JSON types: tuples become lists, numbers of NumPy those of Python."""
+    """Converts a value to JSON types: tuples become lists, and numbers of NumPy become numbers of Python."""
     if isinstance(value, (str, bool, int, float)) or value is None:
         return value
     if isinstance(value, dict):

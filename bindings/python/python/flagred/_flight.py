@@ -26,7 +26,8 @@ __all__ = ["Assessment", "Flight", "Signal", "assess", "read_log"]
 class Signal:
     """A signal of a flight: values over time.
 
-    NumPy converts it to the array of its values; pyarrow, polars and others convert it to a table of ``t_s`` and its name.
+    NumPy converts it to the array of its values; pyarrow, polars and others convert it to a table with the columns ``t_s``
+    and its name.
     """
 
     __slots__ = ("_base", "_flight", "name", "rate_hz", "source", "unit")
@@ -250,7 +251,7 @@ class Flight(FlightData):
 
     @cached_property
     def gaps(self) -> list[Gap]:
-        """Missing data of the log for an assessment."""
+        """Information for an assessment that is missing from the log."""
         return [Gap(**gap) for gap in self._data["gaps"]]
 
     @property
@@ -319,7 +320,7 @@ class Assessment(AssessmentData):
 
     @property
     def help(self) -> str | None:
-        """What the pilot can do to get a verdict next time."""
+        """Advice for the pilot on how to get a verdict next time."""
         help: str | None = self._data["verdict"].get("help")
         return help
 
@@ -490,7 +491,7 @@ def assess(
     profile
         The profile, its name, or its file.
     step_s
-        The interval of the steps of the risk over time, in seconds; without steps if it is None.
+        The interval of the steps of the risk over time, in seconds; None for no steps.
     range
         The range of the motor outputs of a log that does not report it, as for :func:`read_log`.
 

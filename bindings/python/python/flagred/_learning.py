@@ -34,7 +34,7 @@ class LearnResult(NamedTuple):
     """The rule set with the learned rules."""
     rows: int
     refused: list[str]
-    """The reasons of skipped rows."""
+    """The reasons why rows were skipped."""
     rules: int
     """The number of learned rules."""
     conflicts: int
@@ -89,7 +89,7 @@ class TuneResult(NamedTuple):
     model: Model
     rows: int
     refused: list[str]
-    """The reasons of skipped rows."""
+    """The reasons why rows were skipped."""
     before: float
     """The loss of the original model, on the training rows."""
     after: float
@@ -156,7 +156,7 @@ def learn(
     complete
         Add rules for combinations of terms without rows, each from the nearest combination with rows.
     rising, falling
-        Inputs with which the output must not fall, or not rise, when they rise.
+        Inputs whose increase must not lower the output, and inputs whose increase must not raise it.
     keep_rules
         Add the learned rules to those of the model.
     columns
@@ -266,8 +266,8 @@ def tune(
     RuleSetError
         The rule set cannot be used.
     TuneInterrupted
-        Ctrl-C ended the search before its next step; ``best`` of the exception is the best result so far. A second
-        Ctrl-C does not wait for it and raises KeyboardInterrupt.
+        Ctrl-C ended the search before its next step; ``best`` of the exception is the best result so far. After a
+        second Ctrl-C, KeyboardInterrupt is raised without waiting for that step.
 
     Examples
     --------

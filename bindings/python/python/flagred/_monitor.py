@@ -39,7 +39,7 @@ class Monitor(MonitorData):
     signals
         The names of the signals of each sample; a profile may require some.
     step_s
-        The interval of the steps that :meth:`finish` returns, in seconds; without steps if it is None.
+        The interval of the steps that :meth:`finish` returns, in seconds; None for no steps.
 
     Examples
     --------

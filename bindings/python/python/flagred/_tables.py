@@ -24,7 +24,7 @@ def names_of(names: Iterable[str]) -> list[str]:
 
 
 def whole_numbers(options: dict[str, Any]) -> dict[str, Any]:
-    """Returns options unchanged. Counts must be whole numbers from 0."""
+    """Returns the options unchanged. Raises an error if a count is not a whole number of at least 0."""
     for key in sorted(_WHOLE & options.keys()):
         value = options[key]
         if value is not None and (isinstance(value, bool) or not isinstance(value, Integral) or value < 0):

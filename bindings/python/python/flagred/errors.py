@@ -11,7 +11,7 @@ __all__ = ["DataError", "Diagnostic", "FlagredError", "LogError", "RuleSetError"
 class Diagnostic(NamedTuple):
     """A finding about a rule set: the problem, its position, and help.
 
-    ``str()`` draws it in its text.
+    ``str()`` shows it with its source lines.
     """
 
     severity: Literal["error", "warning", "note"]
@@ -21,7 +21,7 @@ class Diagnostic(NamedTuple):
     message: str
     """The problem."""
     help: str | None
-    """What to do."""
+    """Advice on what to do."""
     file: str
     """The file, or a name in angle brackets for other sources."""
     line: int | None
@@ -29,7 +29,7 @@ class Diagnostic(NamedTuple):
     column: int | None
     """The character in the line, from 1; None without a text."""
     drawn: str = ""
-    """The finding drawn in its text."""
+    """The finding as text, with its source lines."""
 
     def __str__(self) -> str:
         return self.drawn
@@ -44,7 +44,7 @@ class FlagredError(Exception):
 
 
 class RuleSetError(FlagredError, ValueError):
-    """A rule set that cannot be used; its text is the drawn findings.
+    """A rule set that cannot be used. The message shows the findings with their source lines.
 
     Examples
     --------

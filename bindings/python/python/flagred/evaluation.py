@@ -153,7 +153,7 @@ class Alarms(NamedTuple):
     """Stretches of at least 20 s, later than 5 s after take-off, and at least 10 s away from any error over 5 degrees and any
     tilt over 45 degrees."""
     ordinary_flights: NeedlessAlarms
-    """Flights whose error over a second stays within 5 degrees, whose tilt stays under 45 degrees, and without an upset."""
+    """Flights without an upset, with an error over a second of at most 5 degrees and a tilt under 45 degrees."""
     upsets: Upsets
     upsets_by_fail: Upsets
     """The same upsets, where only FAIL counts as an alarm."""

@@ -30,7 +30,7 @@ _TERMS = {
     7: ["very_low", "low", "fairly_low", "medium", "fairly_high", "high", "very_high"],
 }
 
-# A rule for each combination of terms, which monotone constraints require.
+# The maximum number of combinations of terms if each needs a rule, as with monotone constraints.
 _MOST_COMBINATIONS = 100_000
 
 
@@ -135,7 +135,7 @@ class _FuzzyEstimator(BaseEstimator):  # type: ignore[misc]
         return [f"{name}_in" if name == output else str(name) for name in names]
 
     def _directions(self, names: list[str]) -> tuple[list[str], list[str]]:
-        """The inputs with which the output must not fall, and those with which it must not rise."""
+        """The inputs whose increase must not lower the output, and those whose increase must not raise it."""
         given = self.monotonic_cst
         if given is None:
             return [], []
@@ -364,7 +364,7 @@ class FuzzyRiskClassifier(ClassifierMixin, _FuzzyEstimator):  # type: ignore[mis
 
 class FuzzyClassifier(ClassifierMixin, _FuzzyEstimator):  # type: ignore[misc]
     """A classifier of two or more classes: one rule set for each, whose output is the degree to which a row belongs to it,
-    in 0 to 1.
+    from 0 to 1.
 
     Each rule set is learned like that of :class:`FuzzyRiskClassifier`, for its class against all others. The probabilities
     are these degrees divided by their sum.

@@ -42,8 +42,8 @@ pub struct Flight {
 #[wasm_bindgen]
 impl Flight {
     /// Reads a log, plain or gzipped, from front to back. `read` takes an offset and a length in bytes and returns a
-    /// `Uint8Array`, which is empty at the end. Signals that do not come from the motors are kept only if they are in
-    /// `signals`; without `signals`, all are kept.
+    /// `Uint8Array`, which is empty at the end. Signals other than motor commands are kept only if they are in `signals`;
+    /// without `signals`, all are kept.
     #[wasm_bindgen(constructor)]
     pub fn new(
         name: String,

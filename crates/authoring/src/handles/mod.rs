@@ -49,8 +49,8 @@ enum Grip {
     Point(usize),
 }
 
-/// Returns the handles of a term. Variables are counted inputs first. The result is empty for a profile, for a
-/// formula, and for a term that cannot be read or whose range cannot be read.
+/// Returns the handles of a term. Variables are counted with the inputs first. The result is empty for a profile, for
+/// a formula, and for a term that cannot be read or whose range cannot be read.
 pub fn of(document: &Document, variable: usize, term: usize) -> Vec<Handle> {
     let found = Place::find(document, variable, term);
     let handles = found.map(|place| place.handles()).unwrap_or_default();

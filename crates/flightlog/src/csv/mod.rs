@@ -153,7 +153,7 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> Result<Flight, R
     }
     let declared = apply_header(&mut flight, header, &layout, span_s)?;
     flight.range = options.range_or_given(flight.range);
-    // If the limits are unknown, so is the meaning of the commands; then only fractions are refused.
+    // If the limits are unknown, the meaning of the commands is unknown too, and only fractions are refused.
     if let Some((raw, refused)) = other_unit
         && (flight.range.is_some() || (0.0..=1.0).contains(&raw))
     {

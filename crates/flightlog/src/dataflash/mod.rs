@@ -70,7 +70,7 @@ impl<'o> Scanner<'o> {
     /// Reads the records of a window and returns the number of processed bytes: all bytes except a record that may
     /// continue after the window; at the end of the log, all bytes.
     fn scan(&mut self, window: &[u8], at_end: bool) -> usize {
-        // Except at the end, the window contains two whole records and the head of the next.
+        // Except at the end, the window contains two whole records and the header of the next.
         let sure = match at_end {
             true => window.len(),
             false => window.len().saturating_sub(2 * LONGEST + HEAD.len()),

@@ -36,7 +36,7 @@ const READ_FAILED: u8 = 8;
 /// The maximum number of parameters that wait for the first heartbeat; any vehicle has fewer.
 const MAX_WAITING: usize = 1 << 12;
 
-/// A payload, filled up with the zeros that version 2 omits at its end.
+/// A payload, padded with the zeros that version 2 omits at its end.
 pub(crate) type Payload = [u8; 255];
 
 pub(crate) fn filled(packet: &Packet<'_>) -> Payload {

@@ -97,7 +97,7 @@ impl KnownOutputs {
     }
 }
 
-/// The motors, and whether they are the first outputs only because no parameter names them.
+/// The motors, and whether they are assumed to be on the first outputs because no parameter names them.
 fn motors_of_px4(parameters: &Parameters, expected: Option<u16>) -> (Vec<(Motor, u16)>, bool) {
     let named = px4_motors(parameters);
     if !named.is_empty() {

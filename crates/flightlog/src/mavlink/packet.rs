@@ -8,7 +8,7 @@ const CHECKSUM: usize = 2;
 const SIGNATURE: usize = 13;
 /// The flag of a signed packet, the only supported flag.
 const SIGNED: u8 = 1;
-/// The length of the longest packet in bytes: head, payload, checksum and signature.
+/// The length of the longest packet in bytes: header, payload, checksum and signature.
 pub(crate) const LONGEST: usize = 10 + 255 + CHECKSUM + SIGNATURE;
 
 /// The version of the protocol of a packet.

@@ -1,7 +1,7 @@
 //! Decides what to request from a vehicle, and when to repeat a request.
 #![expect(
     deprecated,
-    reason = "the old way to ask for rates is what old vehicles understand"
+    reason = "old vehicles understand only the deprecated message that requests rates"
 )]
 
 use super::{

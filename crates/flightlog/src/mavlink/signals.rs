@@ -236,7 +236,7 @@ pub(crate) fn spec_of(id: u32, payload: &Payload) -> Option<usize> {
 }
 
 impl SignalSource {
-    /// The value of the signal in a payload that is filled up with zeros.
+    /// The value of the signal in a payload that is padded with zeros.
     pub(crate) fn value(&self, payload: &[u8]) -> Option<f64> {
         match self {
             Self::Number(field, factor, unknown) => {

@@ -58,7 +58,7 @@ pub struct Pulses(pub(super) [[u16; OUTPUTS_PER_PORT]; PORTS]);
 type Outputs = [([u16; OUTPUTS_PER_PORT], bool); PORTS];
 const NO_OUTPUTS: Outputs = [([u16::MAX; OUTPUTS_PER_PORT], false); PORTS];
 
-/// While the motors idle, a landed state older than this, in seconds, is not used.
+/// The maximum age in seconds of a landed state that still counts as a report that the vehicle is in the air.
 const LANDED_FRESH_S: f64 = 1.5;
 
 /// A clock that jumps is accepted only after the old clock has been silent for this time, in seconds.

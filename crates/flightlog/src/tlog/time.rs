@@ -82,7 +82,7 @@ impl VehicleTime {
         self.latest.is_some()
     }
 
-    /// Whether the maximum number of boots was exceeded.
+    /// Whether the maximum number of boots was reached.
     pub(super) fn is_full(&self) -> bool {
         self.clock.is_full()
     }

@@ -1,4 +1,4 @@
-//! Reads PX4 ULog files: a head, then messages, each with a length, a letter and a body
+//! Reads PX4 ULog files: a header, then messages, each with a length, a letter and a body
 //! (<https://docs.px4.io/main/en/dev_log/ulog_file_format.html>).
 //!
 //! Messages have no checksum, so each is checked in other ways: its letter, the length of its topic, and whether
@@ -19,7 +19,7 @@ use crate::{Flight, Options};
 
 const MAGIC: [u8; 7] = *b"ULog\x01\x12\x35";
 const FILE_HEAD: usize = 16;
-/// The length of the head of a message in bytes: its length (16 bits) and its letter.
+/// The length of the header of a message in bytes: its length (16 bits) and its letter.
 const HEAD: usize = 3;
 const LONGEST: usize = HEAD + u16::MAX as usize;
 /// Body of a synchronisation message.
@@ -31,7 +31,7 @@ pub(crate) fn known_signals() -> impl Iterator<Item = (&'static str, &'static st
     signals.map(|(_, name, unit)| (*name, *unit))
 }
 
-/// Whether a file starts like a ULog file or, if its head is damaged, contains the definition of a topic.
+/// Whether a file starts like a ULog file or, if its header is damaged, contains the definition of a topic.
 pub(crate) fn looks_like(start: &[u8]) -> bool {
     const DEFINITION: &[u8] = b":uint64_t timestamp;";
     start.starts_with(&MAGIC)
@@ -68,7 +68,7 @@ impl Scanner<'_> {
             }
             at = FILE_HEAD;
         }
-        // Except at the end, the window contains a whole message and the head of the next.
+        // Except at the end, the window contains a whole message and the header of the next.
         let sure = match at_end {
             true => window.len(),
             false => window.len().saturating_sub(LONGEST + HEAD),

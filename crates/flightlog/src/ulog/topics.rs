@@ -28,7 +28,7 @@ impl Topics {
         }
     }
 
-    /// The message at the start of `bytes` with its head, if these bytes can be a message; `None` for damage and for a
+    /// The message at the start of `bytes` with its header, if these bytes can be a message; `None` for damage and for a
     /// message that is cut off.
     pub(super) fn message<'a>(&self, bytes: &'a [u8]) -> Option<&'a [u8]> {
         let length = self.length(bytes)?;
@@ -49,7 +49,7 @@ impl Topics {
         self.exact(message) && (rest.is_empty() || self.may_start(rest))
     }
 
-    /// The length of the message that starts here, including its head, if its letter and length are consistent.
+    /// The length of the message that starts here, including its header, if its letter and length are consistent.
     fn length(&self, bytes: &[u8]) -> Option<usize> {
         let &[low, high, letter] = bytes.first_chunk()?;
         let length = u16::from_le_bytes([low, high]);

@@ -2,7 +2,7 @@
 
 use fuzzy::model::MembershipFunction;
 
-/// The interval in which a membership function changes; unbounded flanks are cut off where they are below 0.0002.
+/// The interval in which a membership function changes; unbounded flanks are cut off where they are below 0.0004.
 pub(super) fn extent(function: &MembershipFunction) -> (f64, f64) {
     use MembershipFunction as Of;
     match *function {

@@ -51,7 +51,7 @@ pub(super) struct Reader<'r, 't> {
     pub(super) common: Accumulation,
     /// Whether the text is in fuzzylite's dialect.
     pub(super) is_fuzzylite: bool,
-    /// Whether the terms that are read compute values, which depends on the `METHOD` after them.
+    /// Whether the terms being read compute values, which depends on the `METHOD` that follows them.
     pub(super) computes: bool,
     pub(super) blocks: Vec<Block>,
     /// The current section, for messages.
@@ -113,7 +113,7 @@ impl<'r, 't> Reader<'r, 't> {
         last.is_some_and(|word| *word == ";")
     }
 
-    /// The location of something missing: the next word, or the end of the text.
+    /// The location of an error about something missing: the next word, or the end of the text.
     pub(super) fn here(&self) -> &'t str {
         let text = self.draft.text;
         self.peek()
@@ -256,7 +256,7 @@ impl<'r, 't> Reader<'r, 't> {
                 (input.low, input.high) = (0.0, 1.0);
             }
         }
-        // Without rules, inputs alone are a collection of terms.
+        // A file with inputs but without rules or rule blocks is a collection of terms.
         let model = &self.draft.model;
         let is_collection =
             !model.inputs.is_empty() && model.blocks.is_empty() && model.rules.is_empty();

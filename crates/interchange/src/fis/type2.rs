@@ -150,8 +150,8 @@ pub(super) fn check_rule(draft: &mut ModelDraft<'_>, line: &str) {
     draft.loss("rule", line, message, help);
 }
 
-/// Returns the part of a rule that the toolbox does not evaluate as a rule set does. `inputs` is the number of inputs that
-/// the rule must read, if it is written for the toolbox.
+/// Describes the part of a rule that the toolbox evaluates differently. `inputs` is the number of inputs that the rule must
+/// read, if it is written for the toolbox.
 pub(super) fn unsupported(rule: &Rule, inputs: Option<usize>) -> Option<&'static str> {
     let is_plain = |condition: &Condition| match condition {
         Condition::Is(proposition) => proposition.hedges.is_empty(),

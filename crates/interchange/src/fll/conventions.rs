@@ -17,7 +17,7 @@ pub(crate) fn tsukamoto(output: &mut Output) {
     }
 }
 
-/// Adds a term to a variable, unless it has one with that name: rules refer to the first one.
+/// Adds a term to a variable, unless the variable has a term with that name: rules refer to the first one.
 pub(crate) fn add(
     draft: &mut ModelDraft<'_>,
     (variable, spans): (&mut Variable, &mut VariableSpans),

@@ -112,8 +112,8 @@ pub struct IdentifyStep {
     pub cv_error: f64,
 }
 
-/// A step must also reduce the error by this share of the error of predicting the mean: smaller reductions are
-/// irrelevant.
+/// A step must also reduce the error by this share of the error that a prediction of the mean has: smaller reductions
+/// are irrelevant.
 const MIN_GAIN_OF_ALL: f64 = 1e-3;
 
 /// The radii of clusters that are tried, as shares of the ranges.

@@ -86,8 +86,8 @@ struct Member<'a> {
 }
 
 impl Finder<'_> {
-    /// Adds changes that remove one rule, or one part of a rule. Such a change keeps the outputs if what it removes has
-    /// no effect.
+    /// Adds changes that remove one rule, or one part of a rule. Such a change keeps the outputs if the removed rule or
+    /// part has no effect.
     fn drops(&self, changes: &mut Vec<Change>) {
         // The rules are visited in reverse order, so that the first of two equal rules is kept.
         for (slot, derived, parts) in self.rules.iter().rev() {

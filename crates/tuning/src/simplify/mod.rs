@@ -256,7 +256,7 @@ fn total_size(slots: &RuleSlots) -> usize {
 
 /// Applies the changes that do not change any output, largest reduction first.
 fn without_difference(model: &Model, reference: &mut ReferenceOutputs, slots: &mut RuleSlots) {
-    // A change that failed is not tried again at once: the changes applied meanwhile do not affect the outputs, so
+    // A change that failed is not tried again immediately: the changes applied meanwhile do not affect the outputs, so
     // it would most likely fail again. Before the loop ends, all failed changes are tried once more.
     let mut failed: HashSet<String> = HashSet::new();
     loop {

@@ -52,8 +52,8 @@ rules:
 
 const SUMS: &str = "and: product, implication: product, aggregation: sum";
 
-/// A rule set of 28 learned rules for the risk of a multirotor. Its inputs are how unsteady the motors are now and
-/// were recently, their load, and how often they are at a limit.
+/// A rule set of 28 learned rules for the risk of a multirotor. Its inputs are the current and the recent unsteadiness
+/// of the motors, their load, and the share of time at a limit.
 fn risk() -> Model {
     let mut text = String::from(
         "

@@ -20,7 +20,7 @@ except ModuleNotFoundError as _error:
     if (_error.name or "").partition(".")[0] not in ("bokeh", "dask", "distributed", "duckdb", "pyarrow"):
         raise
     _missing = f"flagred.fleet needs `{_error.name}`: pip install 'flagred[fleet]'"
-    # While Python searches the module of `-m`, this is a placeholder for its path.
+    # While Python searches for the module of `-m`, `sys.argv[0]` is `-m` in place of the module's path.
     if sys.argv[:1] == ["-m"] and "flagred.fleet" in sys.orig_argv:
         print(f"error: {_missing}", file=sys.stderr)
         sys.exit(2)

@@ -58,7 +58,7 @@ def sentence(change: Change) -> str:
 
 
 def advice(change: Change) -> str:
-    """What to do about the change."""
+    """Advice on how to react to the change."""
     if change.change_pct <= 0:
         return "Nothing to do."
     if change.kind == "slope":

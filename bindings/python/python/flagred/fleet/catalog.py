@@ -45,7 +45,7 @@ class Counts:
     changed: int
     todo_bytes: int
     passed_over: int = 0
-    """Names with the pattern of logs that are not files."""
+    """The number of names that match the patterns of logs but are not readable files."""
     damaged: tuple[DamagedError, ...] = ()
     """Damaged files of the dataset, which the run replaces."""
 
@@ -135,8 +135,8 @@ class Catalog:
     def doubled(self) -> Iterator[tuple[str, list[str]]]:
         """The flights that another row replaces, by the file to remove them from.
 
-        The row of the listed version of the log takes precedence, then a row with these settings, of a readable log, of
-        the latest change.
+        A row with these settings takes precedence, then the row of the listed version of the log, then a row of a log that
+        was available, then the row with the latest modification time.
         """
         query = """
         WITH doubled AS (SELECT log FROM flight GROUP BY log HAVING count(*) > 1),

@@ -22,7 +22,7 @@ class Point(NamedTuple):
     kind: str
     """A class of the style sheet, which defines the colour."""
     words: str
-    """The text under the pointer."""
+    """The text of the tooltip."""
 
 
 class Mark(NamedTuple):

@@ -24,7 +24,7 @@ MAX_BYTES = 64 << 20
 def compact(dataset: str) -> int:
     """Joins the small files of each month. Returns by how many the number of files decreased.
 
-    An interruption loses nothing: the next run removes one row of flights that are then in two files.
+    An interruption loses nothing: if a flight is then in two files, the next run removes one of its rows.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def _parts(out: Place) -> Iterator[list[str]]:
 def _join(out: Place, part: list[str]) -> None:
     if len(part) < 2:
         return
-    # Names of joined files come first; of two rows of a flight, the one in the first file is kept.
+    # The names of joined files sort first: of two rows of a flight, the one in the first file is kept.
     name = "0-" + hashlib.sha256("\n".join(part).encode()).hexdigest()[:20]
     joined = f"{part[0].rpartition('/')[0]}/{name}.parquet"
     for kind in KINDS:

@@ -27,9 +27,9 @@ __all__ = ["cluster", "cores", "run"]
 MAX_WORKER_BYTES = 2 << 30
 """The memory limit of a local worker in bytes. A worker that exceeds it is killed, and its log is recorded as crashed."""
 TRIES = 2
-"""How often a shard may kill its local worker before it is split."""
+"""A shard that kills its local worker this many times is split."""
 RETRIES = 2
-"""How often writing the files of a shard is tried again."""
+"""How many times a shard is processed again after an error of writing its files."""
 LONGEST_ALONE_S = 600.0
 """How long a cluster may be without workers."""
 LONGEST_RESTART_S = 30.0
@@ -196,7 +196,7 @@ def _result(future: Future) -> Outcome | BaseException:
         raise
     except OSError as error:
         raise FleetError(f"the dataset cannot be written: {error}", "make the dataset writable, then run the same command again") from error
-    except Exception as error:  # KilledWorker, or a bug that one log triggers: the log is found.
+    except Exception as error:  # KilledWorker, or a bug that one log triggers: splitting finds that log.
         if not isinstance(error, KilledWorker):
             logging.getLogger(__name__).warning("a shard failed and is split: %r", error)
         return error

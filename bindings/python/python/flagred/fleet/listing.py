@@ -20,7 +20,7 @@ class Listing:
     Parameters
     ----------
     recursive
-        Whether to list the folders below too.
+        Whether to list subfolders too.
     wanted
         Whether a path has the name of a log.
     is_listed
@@ -103,7 +103,7 @@ class Listing:
 
 
 def _is_utf8(name: str) -> bool:
-    """Whether a name is valid UTF-8: other bytes are surrogates in it."""
+    """Whether a name is valid UTF-8. Python represents invalid bytes as surrogates."""
     try:
         name.encode()
     except UnicodeEncodeError:

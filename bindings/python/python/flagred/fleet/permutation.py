@@ -14,7 +14,7 @@ class Sum:
     """The statistic of a change over its vehicles, for the data and each shuffling."""
 
     def __init__(self, rows: int, vehicles: int) -> None:
-        # If only one or two of several vehicles changed much, this is not a change of all.
+        # Limits the score of each vehicle, because a large change of one or two vehicles is not a change of all of them.
         self._most = 3.0 if vehicles == 2 else 2.5
         self._rise = np.zeros((rows, len(MEASURES)))
         self._vehicles = np.zeros(len(MEASURES))

@@ -95,7 +95,7 @@ def _read(source: Place, log: Log, crashed: bool, job: Job, rows: dict[str | Non
     except FileNotFoundError:
         return False
     except LogError as error:
-        # Without the name of the log and the help, because causes are counted.
+        # Removes the name of the log and the help, so that logs with the same error can be counted.
         return failed("unreadable", re.sub("^`[^`]*` ", "", str(error).partition("\n")[0]))
     except OSError as error:
         return failed("unavailable", error)

@@ -1,5 +1,5 @@
-"""The report of a fleet: a page that begins with what to act on, a page for each vehicle, and a report for each of the worst
-flights."""
+"""The report of a fleet: a page that begins with the changes to act on, a page for each vehicle, and a report for each of the
+worst flights."""
 
 from __future__ import annotations
 

@@ -73,7 +73,7 @@ def assess(
     dry_run: bool = False,
     watcher: Watcher | None = None,
 ) -> Assessed:
-    """Assesses the logs of folders that a dataset lacks, or that changed since.
+    """Assesses the logs of folders that a dataset lacks, or that changed after they were assessed.
 
     After any interruption, the next call completes the dataset: each log has one row.
 
@@ -134,7 +134,7 @@ def _work(planned: Plan, done: Assessed, told: Watcher, scheduler: str | None, w
 
 @dataclass(frozen=True)
 class Plan:
-    """The work to do: :func:`process` of each shard with the job, by any engine, in any order."""
+    """The work of a run: each shard must be passed to :func:`process` with the job, by any engine and in any order."""
 
     counts: Counts
     job: Job
@@ -209,7 +209,7 @@ def _sum(done: Assessed, outcome: Outcome) -> Assessed:
 
 
 def _listed(places: Sequence[Place], recursive: bool, include: Iterable[str]) -> Callable[[str], bool]:
-    """Returns a function that tells whether a log would be listed if it existed."""
+    """Returns a function that tests whether a log would be listed if it existed."""
     wanted = matcher(include)
     roots = [place.shown(place.root) for place in places]
 

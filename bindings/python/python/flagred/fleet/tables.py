@@ -51,12 +51,12 @@ def figures(values: Mapping[str, str]) -> str:
 
 
 def section(title: str, body: str) -> str:
-    """A part of a page that is folded at first."""
+    """A part of a page that is initially collapsed."""
     return f"<details><summary>{escape(title)}</summary>{body}</details>"
 
 
 def known(value: float | None, digits: int) -> str:
-    # No minus sign before zeros only.
+    # Adding 0 removes the minus sign of a number that is rounded to 0.
     return "NA" if value is None else f"{round(value, digits) + 0.0:,.{digits}f}"
 
 

@@ -20,8 +20,8 @@ class Superseded(FleetError):
 
 
 def take_over(out: Place) -> str:
-    """Makes a new run the one that writes to the dataset, and returns its id. Workers of an earlier run, which may have lost
-    their driver and continue, commit nothing more."""
+    """Starts a new run, which is then the only one that writes to the dataset, and returns its id. Workers of an earlier run,
+    which may have lost their driver and continue, commit nothing more."""
     run = uuid.uuid4().hex
     out.write(out.file(RUN), json.dumps({"run": run, "flagred": __version__}).encode())
     return run
