@@ -429,6 +429,8 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     const parameters = said();
     parameters.delete('start');
     parameters.set('text', await pack(edit.text()));
+    // An address without the text, which a recent change has scheduled, must not replace the link.
+    clearTimeout(telling);
     app.navigate(parameters);
     const link = location.href;
     if (link.length > LONGEST) app.say('The link in the address bar is so long that some programs truncate it. A file is safer.');

@@ -71,8 +71,11 @@ pub(super) fn words(
         "missing    {} combinations of terms without a rule",
         learned.missing
     )?;
-    let missing = usize::try_from(learned.missing).unwrap_or(usize::MAX);
-    listed(out, 11, &learned.missing_antecedents, missing)?;
+    // Of very many combinations, none is listed.
+    if !learned.missing_antecedents.is_empty() {
+        let missing = usize::try_from(learned.missing).unwrap_or(usize::MAX);
+        listed(out, 11, &learned.missing_antecedents, missing)?;
+    }
     if !arguments.rows.claims.is_empty() {
         let found = &outcome.counterexamples;
         let holds = if found.is_empty() { "yes" } else { "no" };
