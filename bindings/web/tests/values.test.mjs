@@ -9,7 +9,7 @@ import { repository } from './installed.mjs';
 import { RuleSet, RuleText, startRules } from '../../../target/web/package/rules.js';
 import { Flight, startFlight } from '../../../target/web/package/flight.js';
 
-/** The maximum processor time for one value, in microseconds: asserted with FLAGRED_TIMED. */
+/** The maximum processor time for one value, in microseconds. It is asserted only if FLAGRED_TIMED is set. */
 const MAX_US = 0.5;
 
 let text, rules;

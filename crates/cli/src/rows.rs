@@ -1,7 +1,7 @@
 //! Shared by `identify`, `learn`, `tune` and `simplify`: arguments, and rows of tables with their positions for messages.
 
 use std::{
-    collections::{BTreeMap, BTreeSet},
+    collections::BTreeMap,
     path::{Path, PathBuf},
 };
 
@@ -304,10 +304,7 @@ fn clamp(data: &mut Data, variables: &[&Variable]) {
 
 /// Refuses a file that is given twice: its rows would be both training and test rows.
 pub(crate) fn distinct(files: &[PathBuf]) -> Result<(), Failure> {
-    let mut seen = BTreeSet::new();
-    // A file that cannot be found is reported when it is read.
-    let found = |file: &PathBuf| file.canonicalize().unwrap_or_else(|_| file.clone());
-    match files.iter().find(|file| !seen.insert(found(file))) {
+    match output::repeated(files) {
         None => Ok(()),
         Some(file) => {
             let message = format!("`{}` is given twice", file.display());

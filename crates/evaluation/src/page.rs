@@ -13,7 +13,7 @@ pub fn body(evaluation: &Evaluation) -> String {
         h1 { "How good the risks are" }
         @for line in tables::head(evaluation) { p.soft { (line) } }
         @for (reason, files) in tables::left_out(evaluation) {
-            p.soft { (files) @if files == 1 { " file" } @else { " files" } " left out: " (reason) }
+            p.soft { (tables::count(files, "file")) " left out: " (reason) }
         }
         figure.picture { (PreEscaped(svg::draw(evaluation))) }
         @for one in tables::tables(evaluation) { (table(&one)) }

@@ -132,7 +132,7 @@ pub fn cases<E>(
         })
         .collect();
 
-    let (mut groups, mut last) = (0_u32, "");
+    let (mut group, mut last) = (0, "");
     let mut cases = Vec::with_capacity(table.len);
     for row in 0..table.len {
         let read = |column: &Column| column.value(table, row);
@@ -155,11 +155,11 @@ pub fn cases<E>(
         // Rows of a file are consecutive. A row without a file is a group of its own.
         let named = text(file);
         if named.is_empty() || named != last {
-            groups += 1;
+            group += 1;
         }
         last = named;
         cases.push(Case {
-            group: groups,
+            group,
             t_s: None,
             vehicle: text(vehicle).to_owned(),
             kind: text(kind).to_owned(),

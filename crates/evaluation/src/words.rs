@@ -12,10 +12,7 @@ pub fn text(evaluation: &Evaluation) -> String {
         text += &format!("{line}\n");
     }
     if !evaluation.left_out.is_empty() {
-        let files = match evaluation.left_out.len() {
-            1 => "1 file".to_owned(),
-            files => format!("{files} files"),
-        };
+        let files = tables::count(evaluation.left_out.len(), "file");
         text += &format!("{files} left out:\n");
     }
     for (reason, files) in tables::left_out(evaluation) {

@@ -36,7 +36,7 @@ const SATURATED_MARGIN: f64 = 0.005;
 #[derive(Debug, Clone)]
 pub(super) struct Flight {
     pub(super) findings: Vec<Finding>,
-    pub(super) findings_left_out: u64,
+    findings_left_out: u64,
     pub(super) steps: Vec<Step>,
     /// The risk of each step with the intervals of its inputs; `None` if it is unknown.
     pub(super) uncertain: Vec<Option<UncertainRisk>>,
@@ -45,18 +45,18 @@ pub(super) struct Flight {
     pub(super) next_step_s: f64,
     pub(super) widened_step_s: Option<f64>,
     pub(super) last: Option<PreviousSample>,
-    pub(super) summary: Summary,
-    pub(super) judged_s: f64,
-    pub(super) risk_times_s: f64,
-    pub(super) motor_samples: u64,
-    pub(super) saturated: u64,
+    summary: Summary,
+    judged_s: f64,
+    risk_times_s: f64,
+    motor_samples: u64,
+    saturated: u64,
     /// The reasons why each risk was unknown.
-    pub(super) unknown: Vec<UnknownTime>,
+    unknown: Vec<UnknownTime>,
     pub(super) losses: Losses,
     /// The indices of the inputs whose values were assumed, not measured, while the vehicle was in the air.
     pub(super) assumed: Vec<usize>,
     /// Judged risks that a landing would still withdraw, in order of time.
-    pub(super) pending: VecDeque<Pending>,
+    pending: VecDeque<Pending>,
 }
 
 /// The previous sample.
@@ -68,7 +68,7 @@ pub(super) struct PreviousSample {
 
 /// A judged risk, or several at nearly the same time.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Pending {
+struct Pending {
     t_s: f64,
     held_s: f64,
     risk_times_s: f64,

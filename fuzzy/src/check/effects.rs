@@ -14,7 +14,7 @@ use crate::{
 /// The largest difference between degrees that count as equal.
 const EQUAL_TOLERANCE: f64 = 0.05;
 
-/// The minimum share of a range on which a nearly constant degree, or the largest degree of a term, is reported.
+/// A term is reported if it has its largest degree on at least this share of the range.
 const MIN_SHARE: f64 = 0.98;
 
 /// The number of steps into which the range of a variable is divided; degrees are computed at the ends of each step.

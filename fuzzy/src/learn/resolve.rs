@@ -198,8 +198,8 @@ fn every_antecedent(shape: &[u16]) -> impl Iterator<Item = Vec<u16>> + '_ {
 /// Gives each antecedent without a decision the decision of the nearest antecedent, and returns the number of completed
 /// antecedents.
 ///
-/// The distance grows by a step at a time. An antecedent at a distance has the same nearest ones as those of its neighbours that
-/// are a step closer. Of the nearest ones, the one with the highest value is used, then the first one.
+/// The search goes outwards from the known decisions, a step at a time. The nearest decisions of an antecedent are those of its
+/// neighbours that are a step nearer to a decision. Of these, the one with the highest value is used, then the first one.
 fn complete(shape: &[u16], decisions: &mut BTreeMap<Box<[u16]>, Decision>) -> u64 {
     // For each input, the number of its terms and the distance between the indices of antecedents with neighbouring terms.
     let mut axes: Vec<(usize, usize)> = shape.iter().map(|n| (usize::from(*n), 1)).collect();

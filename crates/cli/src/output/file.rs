@@ -81,13 +81,7 @@ impl Files {
             let input = input.as_ref();
             // An input that is not a regular file, or cannot be read, is not registered: an output with that name
             // would not replace it.
-            let identity = match is_standard(input) {
-                true => standard(Stream::Input),
-                false => fs::metadata(input)
-                    .ok()
-                    .and_then(|metadata| identity(input, &metadata)),
-            };
-            files.known.extend(identity.map(|identity| FileUse {
+            files.known.extend(of_input(input).map(|identity| FileUse {
                 identity,
                 shown: format!("`{}`", input.display()),
                 role: "an input",
@@ -333,6 +327,29 @@ fn target(path: &Path) -> io::Result<PathBuf> {
         }
     }
     Err(io::Error::other("too many links"))
+}
+
+/// Returns the identity of an input, which may be `-`; `None` if it is not a regular file or cannot be read.
+fn of_input(input: &Path) -> Option<Identity> {
+    match is_standard(input) {
+        true => standard(Stream::Input),
+        false => identity(input, &fs::metadata(input).ok()?),
+    }
+}
+
+/// Returns the first input that an earlier path in the list also leads to.
+pub(crate) fn repeated(inputs: &[PathBuf]) -> Option<&PathBuf> {
+    let identity = |input: &PathBuf| {
+        let path = || Identity::Path(input.canonicalize().unwrap_or_else(|_| input.clone()));
+        of_input(input).unwrap_or_else(path)
+    };
+    let mut known = Vec::new();
+    inputs.iter().find(|input| {
+        let identity = identity(input);
+        let is_known = known.contains(&identity);
+        known.push(identity);
+        is_known
+    })
 }
 
 /// Returns the identity of a regular file; `None` for anything else.

@@ -18,7 +18,7 @@ use fuzzy::drawing::visible;
 pub(crate) use crate::path::{RULES, has_ending};
 
 pub(crate) use self::{
-    file::{Files, Output, Replace, can_replace, new_file, write_all},
+    file::{Files, Output, Replace, can_replace, new_file, repeated, write_all},
     stdout::Stdout,
 };
 use crate::failure::Failure;

@@ -314,7 +314,7 @@ impl<'e> LiveOutput<'e> {
 
     /// Leaves the full screen, and prints a line for each vehicle.
     fn end(&mut self, now_s: f64, all: &[Summary], fleet: &Fleet<'_>) {
-        // For people, this is one piece, because the queue of a screen holds only two.
+        // Text for people is printed as one piece, because the queue for a screen holds only two pieces.
         let mut text = String::new();
         if self.form == OutputForm::Screen {
             thread::sleep(TICK);

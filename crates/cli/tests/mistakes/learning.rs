@@ -55,6 +55,11 @@ const MISTAKES: &[(&str, i32, &str)] = &[
         "`rows.csv` is given twice",
     ),
     (
+        "learn fan.yaml rows.csv ./rows.csv -o out.yaml",
+        2,
+        "`./rows.csv` is given twice",
+    ),
+    (
         "learn fan.yaml rows.csv -o out.yaml --column fan=humidity",
         2,
         "column `humidity` is both an input and the output",

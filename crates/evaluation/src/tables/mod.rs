@@ -267,7 +267,7 @@ fn verdicts(evaluation: &Evaluation) -> Option<Table> {
 }
 
 /// A number with its noun, such as `1 flight` or `2 flights`.
-fn count(number: usize, thing: &str) -> String {
+pub(crate) fn count(number: usize, thing: &str) -> String {
     let plural = if number == 1 { "" } else { "s" };
     format!("{number} {thing}{plural}")
 }

@@ -439,11 +439,9 @@ fn count(
     if written.parse() == Ok(found) {
         return;
     }
-    let there_are = match found {
-        1 => format!("there is 1 {noun}"),
-        _ => format!("there are {found} {noun}s"),
-    };
-    let message = format!("`{key}` is {}, but {there_are}", quoted(written));
+    let verb = if found == 1 { "is" } else { "are" };
+    let counted = rules::counted(found, noun);
+    let message = format!("`{key}` is {}, but there {verb} {counted}", quoted(written));
     if found == 0 && written.parse::<usize>().is_ok() {
         let help = "copy the whole file again: it is cut off";
         draft.error("wrong-count", written, message, help);

@@ -9,6 +9,14 @@ use fuzzy::{
 
 use crate::model_draft::ModelDraft;
 
+/// Formats a count with its noun: `1 rule`, `2 rules`.
+pub(super) fn counted(count: usize, noun: &str) -> String {
+    match count {
+        1 => format!("1 {noun}"),
+        _ => format!("{count} {noun}s"),
+    }
+}
+
 /// Reads a rule into the model.
 pub(super) fn read(draft: &mut ModelDraft<'_>, line: &str) {
     let Some(parts) = parts(line) else {
@@ -19,16 +27,12 @@ pub(super) fn read(draft: &mut ModelDraft<'_>, line: &str) {
     };
     let (inputs, outputs) = (draft.model.inputs.len(), draft.model.outputs.len());
     if parts.inputs.len() != inputs || parts.outputs.len() != outputs {
-        let count = |count: usize, what: &str| match count {
-            1 => format!("1 {what}"),
-            _ => format!("{count} {what}s"),
-        };
         let message = format!(
             "the rule has {} for inputs and {} for outputs, but the file has {} and {}",
-            count(parts.inputs.len(), "number"),
-            count(parts.outputs.len(), "number"),
-            count(inputs, "input"),
-            count(outputs, "output")
+            counted(parts.inputs.len(), "number"),
+            counted(parts.outputs.len(), "number"),
+            counted(inputs, "input"),
+            counted(outputs, "output")
         );
         let help = "write a number for each variable, 0 for a variable that the rule does not use";
         draft.error("rule-syntax", line, message, help);

@@ -135,10 +135,8 @@ impl WatchSender {
         if self.sender.is_none() || self.received.iter().any(is_recent) {
             return;
         }
-        if self.waiting.len() >= TEXTS
-            && let Some(first) = self.waiting.pop_front()
-        {
-            self.send_message(first.to, &first.message, out);
+        if self.waiting.len() >= TEXTS {
+            self.send_first(out);
         }
         self.waiting.push_back(DelayedText {
             due_s: now_s + TEXT_WAIT_S,
@@ -146,6 +144,13 @@ impl WatchSender {
             to,
             message: message.clone(),
         });
+    }
+
+    /// Sends the first of the delayed texts.
+    fn send_first(&mut self, out: &mut SessionOutput) {
+        if let Some(text) = self.waiting.pop_front() {
+            self.send_message(text.to, &text.message, out);
+        }
     }
 
     fn send_message(&mut self, to: (Version, u8), message: &MavMessage, out: &mut SessionOutput) {
@@ -229,9 +234,7 @@ impl WatchSender {
     pub(super) fn tick(&mut self, now_s: f64, system: u8, out: &mut SessionOutput) {
         // The texts are sorted by the time at which they are due.
         while (self.waiting.front()).is_some_and(|text| now_s >= text.due_s) {
-            if let Some(text) = self.waiting.pop_front() {
-                self.send_message(text.to, &text.message, out);
-            }
+            self.send_first(out);
         }
         if self
             .other
